@@ -1,0 +1,95 @@
+//! The one error type: a sentence for the user, an optional hint, and the exit code it leads to.
+
+use std::fmt;
+use std::path::Path;
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Whose fault it is; decides the process's exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The job failed: unreadable input, unwritable output, device failure. Exit code 1.
+    Failed,
+    /// The request makes no sense: flags, scene file, values out of their domain. Exit code 2.
+    Usage,
+    /// No usable OpenCL device. Exit code 3.
+    NoDevice,
+}
+
+/// One clear sentence about what is wrong and where, with a hint where we know a cure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Error {
+    kind: ErrorKind,
+    message: String,
+    hint: Option<String>,
+}
+
+impl Error {
+    /// The job failed (exit code 1).
+    pub fn failed(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Failed, message)
+    }
+
+    /// Wrong usage (exit code 2).
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Usage, message)
+    }
+
+    /// No usable OpenCL device (exit code 3).
+    pub fn no_device(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::NoDevice, message)
+    }
+
+    fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Self {
+            kind,
+            message: message.into(),
+            hint: None,
+        }
+    }
+
+    /// A failed read or write of `path`.
+    pub fn io(path: &Path, doing: &str, cause: &std::io::Error) -> Self {
+        Self::failed(format!("{}: cannot {doing}: {cause}", path.display()))
+    }
+
+    /// The same error with a hint, shown on a line of its own.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// The same error, its place named first: `place: message`.
+    #[must_use]
+    pub fn at(mut self, place: impl fmt::Display) -> Self {
+        self.message = format!("{place}: {}", self.message);
+        self
+    }
+
+    pub fn kind(&self) -> ErrorKind {
+        self.kind
+    }
+
+    pub fn hint_text(&self) -> Option<&str> {
+        self.hint.as_deref()
+    }
+
+    /// The process's exit code for this error (CONTRACT: 1 failed, 2 usage, 3 no device).
+    pub fn exit_code(&self) -> u8 {
+        match self.kind {
+            ErrorKind::Failed => 1,
+            ErrorKind::Usage => 2,
+            ErrorKind::NoDevice => 3,
+        }
+    }
+}
+
+/// The message alone, without `error:` and without the hint.
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}

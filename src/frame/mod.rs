@@ -1,0 +1,96 @@
+//! Image planes: the layers of one picture, row 0 at the top, x fastest.
+
+use crate::extent::ImageSize;
+
+/// What a pixel's ray met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Kind {
+    Nothing = 0,
+    Surface = 1,
+    /// The volume's face, where it is above the iso value.
+    Cap = 2,
+    Geometry = 3,
+}
+
+/// All planes of one picture. Optional planes are there when they were asked for; each has
+/// `size.pixels()` entries.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    pub size: ImageSize,
+    /// Linear light, premultiplied, without background.
+    pub color: Vec<[f32; 4]>,
+    /// sRGB-encoded 0..1, opaque, after background and tone curve: what display formats hold.
+    pub display: Option<Vec<[f32; 4]>>,
+    /// mm from the eye along the ray (from the eye plane in orthographic projection); +∞: none.
+    pub depth: Option<Vec<f32>>,
+    /// Unit, world space, toward lower values; 0 where nothing is hit.
+    pub normal: Option<Vec<[f32; 3]>>,
+    /// Physical: Φ at the hit, or the projected value; 0 where nothing is hit.
+    pub value: Option<Vec<f32>>,
+    /// Samples taken (cells walked, in the reference).
+    pub steps: Option<Vec<u32>>,
+    /// Hierarchy nodes visited (0 in the reference).
+    pub nodes: Option<Vec<u32>>,
+    /// A [`Kind`] as a number.
+    pub kind: Option<Vec<u32>>,
+}
+
+/// The layers beside the colour that a picture can carry (`--aov`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Layer {
+    Depth,
+    Normal,
+    Value,
+    Steps,
+    Nodes,
+    Cast,
+    Kind,
+}
+
+impl Layer {
+    pub const ALL: [Self; 7] = [
+        Self::Depth,
+        Self::Normal,
+        Self::Value,
+        Self::Steps,
+        Self::Nodes,
+        Self::Cast,
+        Self::Kind,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Value => "value",
+            Self::Steps => "steps",
+            Self::Nodes => "nodes",
+            Self::Cast => "cast",
+            Self::Kind => "kind",
+        }
+    }
+}
+
+/// Which planes a renderer is asked for besides the colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Wanted {
+    pub display: bool,
+    pub depth: bool,
+    pub normal: bool,
+    pub value: bool,
+    /// Both counters: steps and nodes.
+    pub counters: bool,
+    pub kind: bool,
+}
+
+impl Wanted {
+    pub const ALL: Self = Self {
+        display: true,
+        depth: true,
+        normal: true,
+        value: true,
+        counters: true,
+        kind: true,
+    };
+}

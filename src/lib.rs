@@ -1,0 +1,19 @@
+//! angioray: pictures from angiograms and other sparse scalar volumes, without a window.
+//!
+//! A volume file becomes a [`volume::Volume`]; a [`scene::Scene`] says what to look at and how;
+//! [`render`] casts it on an OpenCL device, [`mod@reference`] in double precision on the host; both
+//! give a [`frame::Frame`], which is written as a picture. ARCHITECTURE.md draws the whole.
+
+pub mod cli;
+pub mod error;
+pub mod extent;
+pub mod frame;
+pub mod gpu;
+pub mod octree;
+pub mod progress;
+pub mod reference;
+pub mod render;
+pub mod scene;
+pub mod volume;
+
+pub use error::{Error, Result};

@@ -1,0 +1,176 @@
+//! The camera: where the eye is, and the world-space ray of a pixel.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::extent::ImageSize;
+
+/// How rays leave the eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Lens {
+    /// Vertical field of view in degrees, in (0, 180).
+    Perspective { fov_deg: f64 },
+    /// Height of the image in mm; rays start on the eye plane.
+    Orthographic { height_mm: f64 },
+}
+
+/// A point and a unit direction in world space; `t` along it is mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    pub origin_world: DVec3,
+    pub dir_world: DVec3,
+}
+
+/// An eye with an orthonormal basis: `right = normalize(forward × up)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    eye_world: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    lens: Lens,
+}
+
+impl Camera {
+    /// # Errors
+    /// Eye = target, `up` parallel to the view direction, anything not finite, a field of view
+    /// outside (0, 180)°, a height that is not positive.
+    pub fn look_at(eye_world: DVec3, target_world: DVec3, up: DVec3, lens: Lens) -> Result<Self> {
+        if !(eye_world.is_finite() && target_world.is_finite() && up.is_finite()) {
+            return Err(Error::usage(
+                "the camera's eye, target and up must be finite",
+            ));
+        }
+        let forward = (target_world - eye_world).normalize_or_zero();
+        if forward == DVec3::ZERO {
+            return Err(Error::usage(format!(
+                "the camera's eye and target are the same point {eye_world}"
+            )));
+        }
+        let right = forward.cross(up.normalize_or_zero());
+        if right.length() < 1e-9 {
+            return Err(Error::usage(format!(
+                "the camera's up {up} is zero or parallel to its view direction {forward}"
+            )));
+        }
+        match lens {
+            Lens::Perspective { fov_deg } if !(fov_deg > 0.0 && fov_deg < 180.0) => {
+                return Err(Error::usage(format!(
+                    "the field of view {fov_deg} must lie between 0 and 180 degrees"
+                )));
+            }
+            Lens::Orthographic { height_mm } if !(height_mm > 0.0 && height_mm.is_finite()) => {
+                return Err(Error::usage(format!(
+                    "the orthographic height {height_mm} mm must be positive"
+                )));
+            }
+            _ => {}
+        }
+        let right = right.normalize();
+        Ok(Self {
+            eye_world,
+            right,
+            up: right.cross(forward),
+            forward,
+            lens,
+        })
+    }
+
+    pub fn eye_world(&self) -> DVec3 {
+        self.eye_world
+    }
+
+    pub fn right(&self) -> DVec3 {
+        self.right
+    }
+
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
+    pub fn lens(&self) -> Lens {
+        self.lens
+    }
+
+    /// Offset of a point of the image from its centre, along right and up, as a multiple of the
+    /// lens's half height: tan(fov/2) per mm of forward distance, or height/2 in mm.
+    /// `x_px`, `y_px` count from the top left corner; a pixel's centre is at +½.
+    fn image_offset(&self, size: ImageSize, x_px: f64, y_px: f64) -> (f64, f64) {
+        let half_height = match self.lens {
+            Lens::Perspective { fov_deg } => (fov_deg.to_radians() / 2.0).tan(),
+            Lens::Orthographic { height_mm } => height_mm / 2.0,
+        };
+        let height = f64::from(size.height());
+        let u = (2.0 * x_px - f64::from(size.width())) / height;
+        let v = (height - 2.0 * y_px) / height;
+        (u * half_height, v * half_height)
+    }
+
+    /// The ray through a point of the image, in pixels from its top left corner: pixel (i,j)'s
+    /// own ray is `ray(size, i + 0.5, j + 0.5)`. In perspective it starts at the eye, in
+    /// orthographic projection on the eye plane.
+    pub fn ray(&self, size: ImageSize, x_px: f64, y_px: f64) -> Ray {
+        let (u, v) = self.image_offset(size, x_px, y_px);
+        let across = self.right * u + self.up * v;
+        match self.lens {
+            Lens::Perspective { .. } => Ray {
+                origin_world: self.eye_world,
+                dir_world: (self.forward + across).normalize(),
+            },
+            Lens::Orthographic { .. } => Ray {
+                origin_world: self.eye_world + across,
+                dir_world: self.forward,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn size() -> ImageSize {
+        ImageSize::new(200, 100).unwrap()
+    }
+
+    #[test]
+    fn the_top_row_is_up_and_the_last_column_is_right() {
+        let lens = Lens::Perspective { fov_deg: 90.0 };
+        let c = Camera::look_at(DVec3::NEG_Y * 5.0, DVec3::ZERO, DVec3::Z, lens).unwrap();
+        let top = c.ray(size(), 100.0, 0.0).dir_world;
+        assert!(top.distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
+        let right = c.ray(size(), 200.0, 50.0).dir_world;
+        assert!(right.distance(DVec3::new(2.0, 1.0, 0.0).normalize()) < 1e-12);
+        let middle = c.ray(size(), 100.0, 50.0);
+        assert!(middle.dir_world.distance(DVec3::Y) < 1e-12);
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel_and_start_on_the_eye_plane() {
+        let lens = Lens::Orthographic { height_mm: 10.0 };
+        let c = Camera::look_at(DVec3::NEG_Y * 5.0, DVec3::ZERO, DVec3::Z, lens).unwrap();
+        let corner = c.ray(size(), 0.0, 100.0);
+        assert!(corner.origin_world.distance(DVec3::new(-10.0, -5.0, -5.0)) < 1e-12);
+        assert_eq!(corner.dir_world, DVec3::Y);
+    }
+
+    #[test]
+    fn impossible_cameras_are_refused() {
+        let lens = Lens::Perspective { fov_deg: 30.0 };
+        assert!(Camera::look_at(DVec3::ONE, DVec3::ONE, DVec3::Z, lens).is_err());
+        assert!(Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::Z, lens).is_err());
+        assert!(Camera::look_at(DVec3::NAN, DVec3::Z, DVec3::X, lens).is_err());
+        for lens in [
+            Lens::Perspective { fov_deg: 0.0 },
+            Lens::Perspective { fov_deg: 180.0 },
+            Lens::Perspective { fov_deg: f64::NAN },
+            Lens::Orthographic { height_mm: 0.0 },
+        ] {
+            assert!(Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::X, lens).is_err());
+        }
+    }
+}

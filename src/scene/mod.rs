@@ -1,0 +1,54 @@
+//! What to look at and how: plain, validated data. No GPU, no volume.
+//!
+//! Values (iso, window, thresholds, transfer function) are physical values of the volume; lengths
+//! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.
+
+mod camera;
+mod color;
+mod light;
+mod picture;
+mod sampling;
+mod transfer;
+
+pub use camera::{Camera, Lens, Ray};
+pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use light::{Light, Phong, Reflection};
+pub use picture::{Picture, Projection, Window};
+pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
+pub use transfer::{Knot, TransferFunction};
+
+use crate::extent::ImageSize;
+
+/// Everything that determines a picture of a given volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    pub size: ImageSize,
+    pub camera: Camera,
+    pub picture: Picture,
+    pub sampling: Sampling,
+    pub light: Light,
+    pub tone: Tone,
+}
+
+/// From linear light to a display picture. Never touches EXR or NPY.
+///
+/// In order: composite over `background`, encode as sRGB, `(v − ½)·contrast + ½ + brightness`,
+/// clamp to 0..1, `v^(1/gamma)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tone {
+    pub background: Rgb,
+    pub brightness: f64,
+    pub contrast: f64,
+    pub gamma: f64,
+}
+
+impl Default for Tone {
+    fn default() -> Self {
+        Self {
+            background: Rgb::BLACK,
+            brightness: 0.0,
+            contrast: 1.0,
+            gamma: 1.0,
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What is shown: each kind of picture carries what only it needs.
+
+use crate::error::{Error, Result};
+
+use super::{Phong, Refine, Rgb, TransferFunction};
+
+/// The kind of picture (`--mode`).
+#[derive(Debug, Clone, PartialEq)]
+pub enum Picture {
+    /// `iso`: the first point on the ray's interval where Φ − iso changes sign.
+    Surface {
+        iso: f64,
+        /// A ray that enters the volume through a face where Φ ≥ iso hits there.
+        caps: bool,
+        refine: Refine,
+        color: Rgb,
+        /// `None`: the colour alone.
+        phong: Option<Phong>,
+    },
+    /// `mip`, `minip`, `mean`, `lmip`: one value per ray, shown through a window.
+    Projection { of: Projection, window: Window },
+    /// `dvr`: emission and absorption under a transfer function.
+    Emission {
+        transfer: TransferFunction,
+        /// `None`: the transfer function's colours alone.
+        phong: Option<Phong>,
+        /// A ray ends where its opacity exceeds this, in (0, 1]; the colour lost is at most
+        /// (1 − termination) times the brightest colour.
+        termination: f64,
+    },
+}
+
+impl Picture {
+    /// The mode's name on the command line.
+    pub fn mode(&self) -> &'static str {
+        match self {
+            Self::Surface { .. } => "iso",
+            Self::Projection { of, .. } => of.mode(),
+            Self::Emission { .. } => "dvr",
+        }
+    }
+}
+
+/// Which value of a ray is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    Maximum,
+    Minimum,
+    Mean,
+    /// The first local maximum ≥ threshold, else the maximum. Both ends of the interval count as
+    /// local maxima when the value falls away from them (Sato et al. 1998).
+    LocalMaximum {
+        threshold: f64,
+    },
+}
+
+impl Projection {
+    pub fn mode(self) -> &'static str {
+        match self {
+            Self::Maximum => "mip",
+            Self::Minimum => "minip",
+            Self::Mean => "mean",
+            Self::LocalMaximum { .. } => "lmip",
+        }
+    }
+}
+
+/// Values from `low` (black) to `high` (white); the sRGB-encoded grey is linear between.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    low: f64,
+    high: f64,
+}
+
+impl Window {
+    /// # Errors
+    /// `low >= high`, or either not finite.
+    pub fn new(low: f64, high: f64) -> Result<Self> {
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            return Err(Error::usage(format!(
+                "the window {low},{high} is empty: its low end must be below its high end"
+            )));
+        }
+        Ok(Self { low, high })
+    }
+
+    pub fn low(self) -> f64 {
+        self.low
+    }
+
+    pub fn high(self) -> f64 {
+        self.high
+    }
+
+    /// The sRGB-encoded grey of a value, 0..1.
+    pub fn grey_srgb(self, value: f64) -> f64 {
+        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,159 @@
+//! How a ray is followed on the device. The reference has no use for it but for the filter.
+
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+
+/// Reconstruction of Φ between voxel centres.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// The value of the nearest voxel centre; half-way goes to the higher index.
+    Nearest,
+    #[default]
+    Linear,
+}
+
+/// How nodes that cannot contribute are skipped. All give the same picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Traverse {
+    /// No hierarchy: one finest node after the other.
+    Uniform,
+    /// From the root again after every node (stackless; the paper's).
+    KdRestart,
+    /// Up and down from the present node.
+    Hierarchical,
+}
+
+/// How the root between two samples is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RefineMethod {
+    /// The sample behind the crossing.
+    None,
+    Bisection,
+    /// Guarded: an iteration that does not halve the bracket is followed by a bisection.
+    RegulaFalsi,
+    Illinois,
+    Newton,
+}
+
+/// A refiner and its number of iterations: `METHOD[:N]`, N from 1 to 32.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Refine {
+    pub method: RefineMethod,
+    pub iterations: u32,
+}
+
+impl Refine {
+    pub const MAX_ITERATIONS: u32 = 32;
+    /// METHOD names, in the order of [`RefineMethod`].
+    const NAMES: [(&'static str, RefineMethod); 5] = [
+        ("none", RefineMethod::None),
+        ("bisection", RefineMethod::Bisection),
+        ("regula-falsi", RefineMethod::RegulaFalsi),
+        ("illinois", RefineMethod::Illinois),
+        ("newton", RefineMethod::Newton),
+    ];
+}
+
+impl Default for Refine {
+    fn default() -> Self {
+        Self {
+            method: RefineMethod::RegulaFalsi,
+            iterations: 5,
+        }
+    }
+}
+
+impl FromStr for Refine {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || {
+            Error::usage(format!(
+                "'{text}' is not a refiner: write none, bisection, regula-falsi, illinois or newton, and :N for N iterations (1 to {})",
+                Self::MAX_ITERATIONS
+            ))
+        };
+        let (name, count) = match text.split_once(':') {
+            Some((name, count)) => (name, Some(count)),
+            None => (text, None),
+        };
+        let &(_, method) = Self::NAMES
+            .iter()
+            .find(|(n, _)| *n == name)
+            .ok_or_else(wrong)?;
+        let iterations = match (method, count) {
+            (RefineMethod::None, Some(_)) => return Err(wrong()),
+            (RefineMethod::None, None) => 0,
+            // Scharsach 2005, §4: six half-steps.
+            (RefineMethod::Bisection, None) => 6,
+            (_, None) => Self::default().iterations,
+            (_, Some(count)) => count
+                .parse()
+                .ok()
+                .filter(|n| (1..=Self::MAX_ITERATIONS).contains(n))
+                .ok_or_else(wrong)?,
+        };
+        Ok(Self { method, iterations })
+    }
+}
+
+impl std::fmt::Display for Refine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (name, _) = Self::NAMES
+            .iter()
+            .find(|(_, m)| *m == self.method)
+            .expect("every method has a name");
+        match self.method {
+            RefineMethod::None => f.write_str(name),
+            _ => write!(f, "{name}:{}", self.iterations),
+        }
+    }
+}
+
+/// Fixed steps on the sample lattice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// In voxels of the smallest spacing, in [`Sampling::STEP_VOXELS`].
+    pub step_voxels: f64,
+    pub filter: Filter,
+    pub traverse: Traverse,
+    /// Whether nodes that cannot contribute are skipped; never changes the picture.
+    pub skip: bool,
+}
+
+impl Sampling {
+    /// The steps that make sense: finer ones only cost, coarser ones miss everything.
+    pub const STEP_VOXELS: std::ops::RangeInclusive<f64> = 0.001..=100.0;
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self {
+            step_voxels: 0.5,
+            filter: Filter::Linear,
+            traverse: Traverse::Hierarchical,
+            skip: true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refiners_parse_and_print() {
+        for (text, printed) in [
+            ("none", "none"),
+            ("bisection", "bisection:6"),
+            ("regula-falsi", "regula-falsi:5"),
+            ("newton:3", "newton:3"),
+        ] {
+            assert_eq!(text.parse::<Refine>().unwrap().to_string(), printed);
+        }
+        for bad in ["", "none:2", "newton:0", "newton:33", "newton:x", "secant"] {
+            assert!(bad.parse::<Refine>().is_err(), "{bad}");
+        }
+    }
+}

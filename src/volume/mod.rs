@@ -1,0 +1,235 @@
+//! Voxels and their geometry: what every reader produces and everything else consumes.
+//!
+//! Index space: voxel (i,j,k)'s centre is at (i,j,k), x fastest. World space: millimetres, LPS.
+
+mod buffer;
+mod geometry;
+
+pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
+pub use geometry::Geometry;
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::extent::{Dims, Range};
+
+/// `physical = slope · stored + intercept`, slope > 0: the file's own calibration, kept beside the
+/// voxels so that they keep their type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rescale {
+    pub slope: f64,
+    pub intercept: f64,
+}
+
+impl Rescale {
+    pub const IDENTITY: Self = Self {
+        slope: 1.0,
+        intercept: 0.0,
+    };
+
+    pub fn physical(self, stored: f64) -> f64 {
+        self.slope * stored + self.intercept
+    }
+
+    pub fn stored(self, physical: f64) -> f64 {
+        (physical - self.intercept) / self.slope
+    }
+}
+
+/// What to do with NaN and ±Inf voxels (`--non-finite`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NonFinite {
+    /// Count them and read them as the smallest finite value of the volume.
+    #[default]
+    Replace,
+    /// Fail.
+    Refuse,
+}
+
+/// A scalar volume: voxels in their own type, geometry, calibration.
+#[derive(Debug)]
+pub struct Volume {
+    dims: Dims,
+    voxels: Voxels,
+    geometry: Geometry,
+    rescale: Rescale,
+    stored_range: Range,
+    non_finite: u64,
+    notes: Vec<String>,
+}
+
+impl Volume {
+    /// Checks, scans and settles a volume. All its stored values are finite afterwards, its slope
+    /// is positive, and float values lie where single precision can be multiplied safely.
+    ///
+    /// # Errors
+    /// The voxel count differs from `dims`; no voxel is finite; a voxel is not finite and
+    /// `non_finite` refuses it; `rescale` is not finite.
+    pub fn new(
+        dims: Dims,
+        voxels: Voxels,
+        geometry: Geometry,
+        rescale: Rescale,
+        non_finite: NonFinite,
+    ) -> Result<Self> {
+        if voxels.len() as u64 != dims.voxels() {
+            return Err(Error::failed(format!(
+                "{dims} voxels announced, {} given",
+                voxels.len()
+            )));
+        }
+        if !rescale.slope.is_finite() || !rescale.intercept.is_finite() || rescale.slope == 0.0 {
+            return Err(Error::failed(format!(
+                "the calibration slope {}, intercept {} is unusable",
+                rescale.slope, rescale.intercept
+            )));
+        }
+        let mut volume = Self {
+            dims,
+            voxels,
+            geometry,
+            rescale,
+            stored_range: Range { min: 0.0, max: 0.0 },
+            non_finite: 0,
+            notes: Vec::new(),
+        };
+        volume.settle_non_finite(non_finite)?;
+        volume.settle_falling_slope();
+        volume.settle_exponent();
+        Ok(volume)
+    }
+
+    /// Finds the range; replaces NaN and ±Inf.
+    fn settle_non_finite(&mut self, policy: NonFinite) -> Result<()> {
+        let (range, bad) = self.voxels.scan();
+        let Some(range) = range else {
+            return Err(Error::failed("no voxel has a finite value"));
+        };
+        self.stored_range = range;
+        self.non_finite = bad;
+        if bad == 0 {
+            return Ok(());
+        }
+        if policy == NonFinite::Refuse {
+            return Err(Error::failed(format!(
+                "{bad} of {} voxels are NaN or infinite",
+                self.dims.voxels()
+            ))
+            .hint("without '--non-finite refuse' they are read as the smallest finite value"));
+        }
+        // The smallest physical value: the largest stored one where the slope falls.
+        let stand_in = if self.rescale.slope > 0.0 {
+            range.min
+        } else {
+            range.max
+        };
+        self.voxels
+            .map_f32(|v| if v.is_finite() { v } else { stand_in as f32 });
+        self.notes.push(format!(
+            "{bad} of {} voxels are NaN or infinite: read as {}, the smallest finite value",
+            self.dims.voxels(),
+            self.rescale.physical(stand_in)
+        ));
+        Ok(())
+    }
+
+    /// A negative slope would turn maxima into minima: such voxels are stored calibrated.
+    fn settle_falling_slope(&mut self) {
+        if self.rescale.slope > 0.0 {
+            return;
+        }
+        let rescale = self.rescale;
+        self.voxels = Voxels::F32(VoxelBuffer::Owned(
+            self.voxels.to_f64_with(|v| rescale.physical(v) as f32),
+        ));
+        self.rescale = Rescale::IDENTITY;
+        self.notes.push(
+            "the calibration slope is negative: the voxels are kept calibrated, as f32".into(),
+        );
+        let (range, _) = self.voxels.scan();
+        self.stored_range = range.expect("finite voxels stay finite under a finite calibration");
+    }
+
+    /// Floats of extreme magnitude are scaled by a power of two (exact but for denormals), so that
+    /// products of two differences neither overflow nor vanish in single precision.
+    fn settle_exponent(&mut self) {
+        if !matches!(self.voxels, Voxels::F32(_)) {
+            return;
+        }
+        let largest = self.stored_range.min.abs().max(self.stored_range.max.abs());
+        if largest == 0.0 || (-40.0..40.0).contains(&largest.log2()) {
+            return;
+        }
+        let shift = largest.log2().floor();
+        let down = (-shift).exp2();
+        self.voxels.map_f32(|v| (f64::from(v) * down) as f32);
+        self.rescale.slope *= shift.exp2();
+        self.stored_range = Range {
+            min: self.stored_range.min * down,
+            max: self.stored_range.max * down,
+        };
+    }
+
+    /// The same volume with a sentence for the user added (say, about digits lost on reading).
+    #[must_use]
+    pub fn with_note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    pub fn dims(&self) -> Dims {
+        self.dims
+    }
+
+    pub fn voxels(&self) -> &Voxels {
+        &self.voxels
+    }
+
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    pub fn rescale(&self) -> Rescale {
+        self.rescale
+    }
+
+    /// The range of the stored values.
+    pub fn stored_range(&self) -> Range {
+        self.stored_range
+    }
+
+    /// The range of the physical values.
+    pub fn range(&self) -> Range {
+        Range {
+            min: self.rescale.physical(self.stored_range.min),
+            max: self.rescale.physical(self.stored_range.max),
+        }
+    }
+
+    /// How many voxels were NaN or infinite in the file.
+    pub fn non_finite(&self) -> u64 {
+        self.non_finite
+    }
+
+    /// One sentence each, for the user, about what reading changed or chose.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The smallest ball around the domain's eight corners' centre that holds them all: world
+    /// centre and radius in mm.
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+        let world_from_index = self.geometry.world_from_index();
+        let [x, y, z] = self.dims.domain();
+        let middle = DVec3::new(x.0 + x.1, y.0 + y.1, z.0 + z.1) * 0.5;
+        let center = world_from_index.transform_point3(middle);
+        let mut radius_mm: f64 = 0.0;
+        for corner in 0..8 {
+            let pick =
+                |bit: u32, (lo, hi): (f64, f64)| if corner >> bit & 1 == 0 { lo } else { hi };
+            let p_index = DVec3::new(pick(0, x), pick(1, y), pick(2, z));
+            radius_mm = radius_mm.max(world_from_index.transform_point3(p_index).distance(center));
+        }
+        (center, radius_mm)
+    }
+}

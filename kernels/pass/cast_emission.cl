@@ -1,0 +1,90 @@
+// Emission and absorption along each ray, front to back (Levoy 1988; Max 1995).
+//
+// C = sum of c * T * (1 - exp(-absorption * w)), where w is each sample's share of the path: half
+// the way to either neighbour on the sample lattice, so that the shares tile the ray and the rule is
+// of second order. Opacity follows path length in mm alone. Nodes whose whole range is transparent
+// are skipped. A ray ends once its transmission falls below least_transmission: the colour lost is
+// at most least_transmission times the brightest colour.
+//
+// Reads the voxels, the transfer function's knots (values in stored units; colours linear light
+// with opacity in w) and, per octree node, its CLASS_*. Writes color, premultiplied linear light;
+// with COUNTERS the samples taken and the nodes tested.
+#include "lib/octree.clh"
+#include "lib/shade.clh"
+#include "lib/transfer.clh"
+
+kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+                          const global float *knot_values, const global float4 *knot_colors,
+                          VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
+                          global float4 *color
+#if COUNTERS
+                          , global uint *steps, global uint *nodes
+#endif
+)
+{
+    uint i = get_global_id(0);
+    uint j = get_global_id(1);
+    if (i >= rays.width || j >= rays.height)
+        return;
+    uint pixel = j * rays.width + i;
+
+    Ray ray = pixel_ray(rays, i, j);
+    Interval interval = volume_interval(volume, ray);
+    float3 emitted = (float3)(0.0f);
+    float optical_depth = 0.0f;
+    float transmission = 1.0f;
+    uint sample_count = 0u;
+    uint node_count = 0u;
+
+    if (interval.enter <= interval.exit) {
+        Lattice lattice = ray_lattice(volume, ray, interval, cast.step_mm);
+        Walk walk = walk_start(volume, cast.traverse);
+        uint3 cell = cell_at(volume, lattice.start);
+        uint k = 0u;
+        while (k <= lattice.last && transmission >= cast.least_transmission) {
+            bool skip = false;
+            uint end = lattice.last + 1u;
+            if (cast.traverse != TRAVERSE_OFF) {
+                for (;;) {
+                    skip = node_class[node_index(levels, cell, walk.level)] != CLASS_VISIT;
+                    node_count++;
+                    if (skip || walk.level == 0u)
+                        break;
+                    walk.level--;
+                }
+                end = span_end(volume, lattice, k, cell, walk.level);
+            }
+            for (; k < end && !skip && transmission >= cast.least_transmission; k++) {
+                float t = lattice_t(lattice, k);
+                float3 p = lattice_point(volume, lattice, t);
+                float4 seen = transfer_at(knot_values, knot_colors, cast.knots, field_at(voxels, volume, p));
+                sample_count++;
+                if (seen.w > 0.0f) {
+                    float before = lattice_t(lattice, k == 0u ? 0u : k - 1u);
+                    float after = lattice_t(lattice, k == lattice.last ? k : k + 1u);
+                    float depth_here = absorption_per_mm(cast, seen.w) * (0.5f * (after - before));
+                    float3 rgb = seen.xyz;
+#if SHADED
+                    float3 toward_eye = -ray.dir_world;
+                    rgb = reflect_light(shading, rgb, field_normal(voxels, volume, p, toward_eye), toward_eye);
+#endif
+                    emitted += rgb * (transmission * -expm1(-depth_here));
+                    optical_depth += depth_here;
+                    transmission = exp(-optical_depth);
+                }
+            }
+            k = end;
+            if (k <= lattice.last) {
+                uint3 before = cell;
+                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+                walk_on(&walk, before, cell);
+            }
+        }
+    }
+
+    color[pixel] = (float4)(emitted, -expm1(-optical_depth));
+#if COUNTERS
+    steps[pixel] = sample_count;
+    nodes[pixel] = node_count;
+#endif
+}

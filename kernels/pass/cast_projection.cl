@@ -1,0 +1,123 @@
+// One value per ray: its maximum or minimum, its mean, or its first local maximum.
+//
+// PROJECTION_EXTREMUM: the largest of sign * Phi over the samples, and where it is first reached;
+// a node is skipped when its range cannot beat the running extremum (Mroz et al. 2000).
+// PROJECTION_MEAN: the composite trapezoid rule, every sample needed.
+// PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
+// either end counts when the value falls away from it.
+//
+// Reads the voxels and, per octree node, its range. Writes per pixel kind (surface where the ray
+// meets the volume) and value (physical); with LAYERS depth (mm from the eye; +inf for the mean);
+// with COUNTERS the samples taken and the nodes tested.
+#include "lib/octree.clh"
+
+#if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
+#error "PROJECTION, which value is wanted, is given by the host"
+#endif
+
+kernel void cast_projection(const global VOXEL *voxels, const global float2 *node_range, const global uint4 *levels,
+                            VolumeGrid volume, RayGrid rays, ProjectionCast cast,
+                            global uint *kind, global float *value
+#if LAYERS
+                            , global float *depth
+#endif
+#if COUNTERS
+                            , global uint *steps, global uint *nodes
+#endif
+)
+{
+    uint i = get_global_id(0);
+    uint j = get_global_id(1);
+    if (i >= rays.width || j >= rays.height)
+        return;
+    uint pixel = j * rays.width + i;
+
+    Ray ray = pixel_ray(rays, i, j);
+    Interval interval = volume_interval(volume, ray);
+    bool meets = interval.enter <= interval.exit;
+    float found = 0.0f;
+    float found_mm = INFINITY; // from the entry
+    uint sample_count = 0u;
+    uint node_count = 0u;
+
+    if (meets) {
+        Lattice lattice = ray_lattice(volume, ray, interval, cast.step_mm);
+#if PROJECTION == PROJECTION_MEAN
+        // Compensated summation (Kahan 1965): thousands of samples keep their digits.
+        float sum = 0.0f;
+        float lost = 0.0f;
+        for (uint k = 0u; k <= lattice.last; k++) {
+            float t = lattice_t(lattice, k);
+            float before = lattice_t(lattice, k == 0u ? 0u : k - 1u);
+            float after = lattice_t(lattice, k == lattice.last ? k : k + 1u);
+            float v = field_at(voxels, volume, lattice_point(volume, lattice, t));
+            float weight = lattice.last == 0u ? 1.0f : 0.5f * (after - before) / lattice.length_mm;
+            float term = v * weight - lost;
+            float next = sum + term;
+            lost = (next - sum) - term;
+            sum = next;
+            sample_count++;
+        }
+        found = sum;
+#else
+        float most = -INFINITY; // of sign * Phi
+        bool done = false;
+        Walk walk = walk_start(volume, cast.traverse);
+        uint3 cell = cell_at(volume, lattice.start);
+        uint k = 0u;
+        while (k <= lattice.last && !done) {
+            bool skip = false;
+            uint end = lattice.last + 1u;
+            if (cast.traverse != TRAVERSE_OFF) {
+                for (;;) {
+                    float2 range = node_range[node_index(levels, cell, walk.level)];
+                    float bound = cast.sign > 0.0f ? range.y : -range.x;
+                    node_count++;
+#if PROJECTION == PROJECTION_LOCAL
+                    // A climb that has reached the threshold ends where all that follows is lower.
+                    skip = most >= cast.threshold ? bound < most : bound <= most;
+#else
+                    skip = bound <= most;
+#endif
+                    if (skip || walk.level == 0u)
+                        break;
+                    walk.level--;
+                }
+                end = span_end(volume, lattice, k, cell, walk.level);
+            }
+#if PROJECTION == PROJECTION_LOCAL
+            done = skip && most >= cast.threshold;
+#endif
+            for (; k < end && !skip && !done; k++) {
+                float t = lattice_t(lattice, k);
+                float v = cast.sign * field_at(voxels, volume, lattice_point(volume, lattice, t));
+                sample_count++;
+#if PROJECTION == PROJECTION_LOCAL
+                done = most >= cast.threshold && v < most;
+#endif
+                if (v > most && !done) {
+                    most = v;
+                    found_mm = t;
+                }
+            }
+            k = end;
+            if (k <= lattice.last) {
+                uint3 before = cell;
+                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+                walk_on(&walk, before, cell);
+            }
+        }
+        found = cast.sign * most;
+#endif
+    }
+
+    kind[pixel] = meets ? KIND_SURFACE : KIND_NOTHING;
+    value[pixel] = meets ? volume.slope * found + volume.intercept : 0.0f;
+#if LAYERS
+    depth[pixel] = ray.base_mm + (interval.enter + found_mm);
+#endif
+#if COUNTERS
+    steps[pixel] = sample_count;
+    nodes[pixel] = node_count;
+#endif
+}

@@ -1,0 +1,33 @@
+// The unit normal where each ray hit: toward lower values, in world space; a cap's is its face's
+// outward normal. Zero where nothing was hit.
+//
+// Reads hit_mm and kind of cast_surface. Writes normal (w = 0).
+#include "lib/field.clh"
+
+kernel void surface_normal(const global VOXEL *voxels, VolumeGrid volume, RayGrid rays,
+                           const global float *hit_mm, const global uint *kind, global float4 *normal)
+{
+    uint i = get_global_id(0);
+    uint j = get_global_id(1);
+    if (i >= rays.width || j >= rays.height)
+        return;
+    uint pixel = j * rays.width + i;
+
+    float3 n = (float3)(0.0f);
+    if (kind[pixel] != KIND_NOTHING) {
+        Ray ray = pixel_ray(rays, i, j);
+        float3 toward_eye = -ray.dir_world;
+        if (kind[pixel] == KIND_CAP) {
+            Interval interval = volume_interval(volume, ray);
+            float3 outward = (float3)(
+                interval.axis == 0u ? (ray.dir.x > 0.0f ? -1.0f : 1.0f) : 0.0f,
+                interval.axis == 1u ? (ray.dir.y > 0.0f ? -1.0f : 1.0f) : 0.0f,
+                interval.axis == 2u ? (ray.dir.z > 0.0f ? -1.0f : 1.0f) : 0.0f);
+            n = world_normal(volume, outward, toward_eye);
+        } else {
+            float3 p = clamp_to_domain(volume, ray.origin + hit_mm[pixel] * ray.dir);
+            n = field_normal(voxels, volume, p, toward_eye);
+        }
+    }
+    normal[pixel] = (float4)(n, 0.0f);
+}

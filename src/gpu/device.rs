@@ -1,0 +1,209 @@
+//! Finding and opening an OpenCL device.
+
+use std::ffi::CString;
+use std::fmt;
+
+use ocl::core::{
+    self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId, DeviceInfo as Query,
+    DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
+};
+
+use crate::error::{Error, Result};
+
+use super::{device_error, loader};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeviceKind {
+    Cpu,
+    Gpu,
+    Accelerator,
+}
+
+impl fmt::Display for DeviceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+            Self::Accelerator => "accelerator",
+        })
+    }
+}
+
+/// What `angioray devices` prints of a device.
+#[derive(Debug, Clone)]
+pub struct DeviceInfo {
+    /// Its place in the list of all platforms' devices: `--device ID`.
+    pub id: usize,
+    pub name: String,
+    pub platform: String,
+    pub driver: String,
+    /// The OpenCL version that it speaks.
+    pub version: String,
+    pub kind: DeviceKind,
+    pub compute_units: u32,
+    pub memory_bytes: u64,
+    pub max_allocation_bytes: u64,
+    pub max_work_group: usize,
+}
+
+/// An open device with one in-order queue that times what runs on it.
+pub struct Device {
+    info: DeviceInfo,
+    device_id: DeviceId,
+    context: Context,
+    queue: CommandQueue,
+}
+
+impl Device {
+    /// All usable devices of all platforms.
+    ///
+    /// # Errors
+    /// No OpenCL library, no platform, no device: [`crate::error::ErrorKind::NoDevice`].
+    pub fn list() -> Result<Vec<DeviceInfo>> {
+        Ok(found()?.into_iter().map(|(_, _, info)| info).collect())
+    }
+
+    /// Opens the device that `choice` names: an ID of [`Device::list`], `cpu`, `gpu`, part of a
+    /// device's or platform's name in any case, or nothing for the first GPU, else the first device.
+    ///
+    /// # Errors
+    /// As [`Device::list`], or no device fits the choice.
+    pub fn select(choice: &str) -> Result<Self> {
+        let mut found = found()?;
+        let wanted = choice.to_lowercase();
+        let fits = |info: &DeviceInfo| match wanted.as_str() {
+            "" => info.kind == DeviceKind::Gpu,
+            "cpu" => info.kind == DeviceKind::Cpu,
+            "gpu" => info.kind == DeviceKind::Gpu,
+            _ => wanted.parse().map_or_else(
+                |_| {
+                    info.name.to_lowercase().contains(&wanted)
+                        || info.platform.to_lowercase().contains(&wanted)
+                },
+                |id: usize| id == info.id,
+            ),
+        };
+        let place = match found.iter().position(|(_, _, info)| fits(info)) {
+            Some(place) => place,
+            None if wanted.is_empty() => 0,
+            None => {
+                let names: Vec<_> = found
+                    .iter()
+                    .map(|(_, _, info)| format!("{} {}", info.id, info.name))
+                    .collect();
+                return Err(Error::no_device(format!(
+                    "no OpenCL device fits '{choice}'; there is: {}",
+                    names.join(", ")
+                ))
+                .hint("'angioray devices' lists them; '--device reference' needs none"));
+            }
+        };
+        let (platform, device_id, info) = found.swap_remove(place);
+        Self::open(platform, device_id, info)
+    }
+
+    fn open(platform: PlatformId, device_id: DeviceId, info: DeviceInfo) -> Result<Self> {
+        let properties = ContextProperties::new().platform(platform);
+        let context = core::create_context(Some(&properties), &[device_id], None, None)
+            .map_err(|e| device_error("open the device", &e))?;
+        let profiling = CommandQueueProperties::PROFILING_ENABLE;
+        let queue = core::create_command_queue(&context, &device_id, Some(profiling))
+            .map_err(|e| device_error("make a command queue", &e))?;
+        Ok(Self {
+            info,
+            device_id,
+            context,
+            queue,
+        })
+    }
+
+    pub fn info(&self) -> &DeviceInfo {
+        &self.info
+    }
+
+    pub(super) fn device_id(&self) -> DeviceId {
+        self.device_id
+    }
+
+    pub(super) fn context(&self) -> &Context {
+        &self.context
+    }
+
+    pub(super) fn queue(&self) -> &CommandQueue {
+        &self.queue
+    }
+
+    /// Waits until all that was launched is done.
+    pub fn finish(&self) -> Result<()> {
+        core::finish(&self.queue).map_err(|e| device_error("finish", &e))
+    }
+
+    pub(super) fn program(&self, source: &str) -> Result<core::Program> {
+        let source = CString::new(source)
+            .map_err(|_| Error::failed("a kernel source holds a NUL byte"))?;
+        core::create_program_with_source(&self.context, &[source])
+            .map_err(|e| device_error("take a kernel's source", &e))
+    }
+}
+
+/// Every usable device with its platform. Devices that cannot be asked are left out.
+fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
+    const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
+    loader::open().map_err(|reason| {
+        Error::no_device(format!("no OpenCL library is installed ({reason})")).hint(INSTALL)
+    })?;
+    let platforms = core::get_platform_ids().unwrap_or_default();
+    let mut found = Vec::new();
+    for platform in platforms {
+        let devices = core::get_device_ids(platform, Some(DeviceType::ALL), None).unwrap_or_default();
+        for device in devices {
+            if let Some(info) = describe(found.len(), platform, device) {
+                found.push((platform, device, info));
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(Error::no_device("no OpenCL device was found").hint(INSTALL));
+    }
+    Ok(found)
+}
+
+fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceInfo> {
+    let ask = |query| core::get_device_info(device, query).ok();
+    let text = |query| Some(ask(query)?.to_string().trim().to_owned());
+    let DeviceInfoResult::Type(kind) = ask(Query::Type)? else {
+        return None;
+    };
+    let DeviceInfoResult::MaxComputeUnits(compute_units) = ask(Query::MaxComputeUnits)? else {
+        return None;
+    };
+    let DeviceInfoResult::GlobalMemSize(memory_bytes) = ask(Query::GlobalMemSize)? else {
+        return None;
+    };
+    let DeviceInfoResult::MaxMemAllocSize(max_allocation_bytes) = ask(Query::MaxMemAllocSize)? else {
+        return None;
+    };
+    let DeviceInfoResult::MaxWorkGroupSize(max_work_group) = ask(Query::MaxWorkGroupSize)? else {
+        return None;
+    };
+    Some(DeviceInfo {
+        id,
+        name: text(Query::Name)?,
+        platform: core::get_platform_info(platform, PlatformInfo::Name)
+            .ok()?
+            .to_string(),
+        driver: text(Query::DriverVersion)?,
+        version: text(Query::Version)?,
+        kind: if kind.contains(DeviceType::GPU) {
+            DeviceKind::Gpu
+        } else if kind.contains(DeviceType::CPU) {
+            DeviceKind::Cpu
+        } else {
+            DeviceKind::Accelerator
+        },
+        compute_units,
+        memory_bytes,
+        max_allocation_bytes,
+        max_work_group,
+    })
+}

@@ -1,0 +1,53 @@
+//! Building a kernel from its source and its constants.
+
+use std::ffi::CString;
+
+use ocl::core::{self, Kernel, ProgramBuildInfo};
+
+use crate::error::{Error, Result};
+
+use super::{Device, device_error, source};
+
+/// The constants of a built program, `-D NAME=VALUE`, in the order given. Two equal lists are the
+/// same program.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct Defines(Vec<(&'static str, String)>);
+
+impl Defines {
+    #[must_use]
+    pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
+        self.0.push((name, value.to_string()));
+        self
+    }
+
+    /// The compiler's options: the constants, OpenCL C 1.2, argument names kept for checking.
+    pub fn options(&self) -> String {
+        let mut options = String::from("-cl-std=CL1.2 -cl-kernel-arg-info");
+        for (name, value) in &self.0 {
+            options.push_str(&format!(" -D {name}={value}"));
+        }
+        options
+    }
+}
+
+/// Builds `kernels/<path>` and takes its kernel `name`.
+///
+/// # Errors
+/// The source does not build on this device; the message holds the compiler's first lines.
+pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) -> Result<Kernel> {
+    let program = device.program(&source::flatten(path)?)?;
+    let options = CString::new(defines.options())
+        .map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
+    if let Err(error) = core::build_program(&program, Some(&[device.device_id()]), &options, None, None) {
+        let log = core::get_program_build_info(&program, device.device_id(), ProgramBuildInfo::BuildLog)
+            .map(|log| log.to_string())
+            .unwrap_or_else(|_| error.to_string());
+        let first_lines: Vec<&str> = log.lines().filter(|l| !l.trim().is_empty()).take(12).collect();
+        return Err(Error::failed(format!(
+            "kernels/{path} does not build on '{}': {}",
+            device.info().name,
+            first_lines.join("; ")
+        )));
+    }
+    core::create_kernel(&program, name).map_err(|e| device_error(&format!("take the kernel {name}"), &e))
+}

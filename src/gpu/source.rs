@@ -1,0 +1,127 @@
+//! Kernel sources: embedded in the program, or read from disk while developing.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+
+/// Names the folder from which kernels are read instead of the embedded ones.
+const FROM_DISK: &str = "ANGIORAY_KERNELS";
+
+macro_rules! embedded {
+    ($($path:literal),* $(,)?) => {
+        &[$(($path, include_str!(concat!("../../kernels/", $path)))),*]
+    };
+}
+
+/// Every kernel file, its path below `kernels/`.
+const FILES: &[(&str, &str)] = embedded![
+    "lib/abi.clh",
+    "lib/color.clh",
+    "lib/field.clh",
+    "lib/lattice.clh",
+    "lib/octree.clh",
+    "lib/ray.clh",
+    "lib/refine.clh",
+    "lib/shade.clh",
+    "lib/transfer.clh",
+    "pass/cast_emission.cl",
+    "pass/cast_projection.cl",
+    "pass/cast_surface.cl",
+    "pass/shade_surface.cl",
+    "pass/surface_normal.cl",
+    "pass/tone_curve.cl",
+    "pass/window_value.cl",
+    "test/abi.cl",
+    "test/refine.cl",
+    "test/spans.cl",
+    "test/transfer.cl",
+];
+
+/// The paths of all kernel files below `kernels/`.
+pub fn files() -> impl Iterator<Item = &'static str> {
+    FILES.iter().map(|(path, _)| *path)
+}
+
+/// The file at `path` below `kernels/` with every `#include "…"` replaced once by the file it
+/// names, and `#line` marks, so that a build error reads `kernels/pass/x.cl:15:14`.
+///
+/// # Errors
+/// A file that does not exist, or cannot be read from disk.
+pub fn flatten(path: &str) -> Result<String> {
+    let mut text = String::new();
+    let mut included = Vec::new();
+    append(path, &mut included, &mut text)?;
+    Ok(text)
+}
+
+fn append(path: &str, included: &mut Vec<String>, text: &mut String) -> Result<()> {
+    if included.iter().any(|seen| seen == path) {
+        return Ok(());
+    }
+    included.push(path.to_owned());
+    let file = read(path)?;
+    text.push_str(&format!("#line 1 \"kernels/{path}\"\n"));
+    for (number, line) in file.lines().enumerate() {
+        if let Some(name) = line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+            append(name, included, text)?;
+            text.push_str(&format!("#line {} \"kernels/{path}\"\n", number + 2));
+        } else if line == "#pragma once" {
+            text.push('\n'); // each file is included once as it is
+        } else {
+            text.push_str(line);
+            text.push('\n');
+        }
+    }
+    Ok(())
+}
+
+fn read(path: &str) -> Result<Cow<'static, str>> {
+    if let Some(folder) = std::env::var_os(FROM_DISK) {
+        let on_disk = Path::new(&folder).join(path);
+        return std::fs::read_to_string(&on_disk)
+            .map(Cow::Owned)
+            .map_err(|e| Error::io(&on_disk, "read the kernel source", &e));
+    }
+    FILES
+        .iter()
+        .find(|(name, _)| *name == path)
+        .map(|(_, text)| Cow::Borrowed(*text))
+        .ok_or_else(|| Error::failed(format!("there is no kernel file '{path}'")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kernel_file_is_embedded() {
+        let mut on_disk = Vec::new();
+        for folder in ["lib", "pass", "test"] {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels").join(folder);
+            for entry in std::fs::read_dir(path).unwrap() {
+                let name = entry.unwrap().file_name().into_string().unwrap();
+                on_disk.push(format!("{folder}/{name}"));
+            }
+        }
+        on_disk.sort();
+        assert_eq!(on_disk, files().collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn includes_are_flattened_once_and_lines_keep_their_names() {
+        let text = flatten("pass/cast_surface.cl").unwrap();
+        assert!(!text.contains("#include"));
+        assert_eq!(text.matches("} RayGrid;").count(), 1);
+        assert!(text.contains("#line 1 \"kernels/lib/ray.clh\""));
+        // The line after the last include is marked with its own number.
+        let source = read("pass/cast_surface.cl").unwrap();
+        let after = source.lines().position(|l| l.contains("lib/octree.clh")).unwrap() + 2;
+        assert!(text.contains(&format!("#line {after} \"kernels/pass/cast_surface.cl\"")));
+    }
+
+    #[test]
+    fn an_unknown_file_is_an_error() {
+        assert!(flatten("pass/nothing.cl").is_err());
+    }
+}

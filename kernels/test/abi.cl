@@ -1,1 +1,97 @@
-// placeholder
+// Sizes and field offsets of the structs shared with the host, as this device lays them out.
+//
+// Writes, struct after struct, the size and then each field's offset, in bytes.
+#include "lib/abi.clh"
+
+#define OFFSET(type, field) (uint)((const private char *)&value.field - (const private char *)&value)
+
+kernel void abi(global uint *layout)
+{
+    if (get_global_id(0) != 0 || get_global_id(1) != 0)
+        return;
+    uint n = 0;
+    {
+        RayGrid value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(RayGrid, origin);
+        layout[n++] = OFFSET(RayGrid, origin_dx);
+        layout[n++] = OFFSET(RayGrid, origin_dy);
+        layout[n++] = OFFSET(RayGrid, dir_index);
+        layout[n++] = OFFSET(RayGrid, dir_index_dx);
+        layout[n++] = OFFSET(RayGrid, dir_index_dy);
+        layout[n++] = OFFSET(RayGrid, dir_world);
+        layout[n++] = OFFSET(RayGrid, dir_world_dx);
+        layout[n++] = OFFSET(RayGrid, dir_world_dy);
+        layout[n++] = OFFSET(RayGrid, base_mm);
+        layout[n++] = OFFSET(RayGrid, width);
+        layout[n++] = OFFSET(RayGrid, height);
+        layout[n++] = OFFSET(RayGrid, pad);
+    }
+    {
+        VolumeGrid value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(VolumeGrid, gradient_row_x);
+        layout[n++] = OFFSET(VolumeGrid, gradient_row_y);
+        layout[n++] = OFFSET(VolumeGrid, gradient_row_z);
+        layout[n++] = OFFSET(VolumeGrid, nx);
+        layout[n++] = OFFSET(VolumeGrid, ny);
+        layout[n++] = OFFSET(VolumeGrid, nz);
+        layout[n++] = OFFSET(VolumeGrid, levels);
+        layout[n++] = OFFSET(VolumeGrid, slope);
+        layout[n++] = OFFSET(VolumeGrid, intercept);
+        layout[n++] = OFFSET(VolumeGrid, pad);
+    }
+    {
+        SurfaceCast value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(SurfaceCast, iso);
+        layout[n++] = OFFSET(SurfaceCast, step_mm);
+        layout[n++] = OFFSET(SurfaceCast, caps);
+        layout[n++] = OFFSET(SurfaceCast, refine);
+        layout[n++] = OFFSET(SurfaceCast, iterations);
+        layout[n++] = OFFSET(SurfaceCast, traverse);
+        layout[n++] = OFFSET(SurfaceCast, pad);
+    }
+    {
+        ProjectionCast value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(ProjectionCast, step_mm);
+        layout[n++] = OFFSET(ProjectionCast, sign);
+        layout[n++] = OFFSET(ProjectionCast, threshold);
+        layout[n++] = OFFSET(ProjectionCast, traverse);
+    }
+    {
+        EmissionCast value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(EmissionCast, step_mm);
+        layout[n++] = OFFSET(EmissionCast, unit_length_mm);
+        layout[n++] = OFFSET(EmissionCast, most_absorption);
+        layout[n++] = OFFSET(EmissionCast, least_transmission);
+        layout[n++] = OFFSET(EmissionCast, knots);
+        layout[n++] = OFFSET(EmissionCast, traverse);
+        layout[n++] = OFFSET(EmissionCast, pad);
+    }
+    {
+        Shading value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(Shading, color);
+        layout[n++] = OFFSET(Shading, toward_light);
+        layout[n++] = OFFSET(Shading, ambient);
+        layout[n++] = OFFSET(Shading, diffuse);
+        layout[n++] = OFFSET(Shading, specular);
+        layout[n++] = OFFSET(Shading, shininess);
+        layout[n++] = OFFSET(Shading, reflection);
+        layout[n++] = OFFSET(Shading, pad_0);
+        layout[n++] = OFFSET(Shading, pad_1);
+        layout[n++] = OFFSET(Shading, pad_2);
+    }
+    {
+        Tone value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(Tone, background);
+        layout[n++] = OFFSET(Tone, brightness);
+        layout[n++] = OFFSET(Tone, contrast);
+        layout[n++] = OFFSET(Tone, inverse_gamma);
+        layout[n++] = OFFSET(Tone, pad);
+    }
+}

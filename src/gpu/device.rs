@@ -4,8 +4,8 @@ use std::ffi::CString;
 use std::fmt;
 
 use ocl::core::{
-    self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId, DeviceInfo as Query,
-    DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
+    self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId,
+    DeviceInfo as Query, DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
 };
 
 use crate::error::{Error, Result};
@@ -139,8 +139,8 @@ impl Device {
     }
 
     pub(super) fn program(&self, source: &str) -> Result<core::Program> {
-        let source = CString::new(source)
-            .map_err(|_| Error::failed("a kernel source holds a NUL byte"))?;
+        let source =
+            CString::new(source).map_err(|_| Error::failed("a kernel source holds a NUL byte"))?;
         core::create_program_with_source(&self.context, &[source])
             .map_err(|e| device_error("take a kernel's source", &e))
     }
@@ -155,7 +155,8 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     let platforms = core::get_platform_ids().unwrap_or_default();
     let mut found = Vec::new();
     for platform in platforms {
-        let devices = core::get_device_ids(platform, Some(DeviceType::ALL), None).unwrap_or_default();
+        let devices =
+            core::get_device_ids(platform, Some(DeviceType::ALL), None).unwrap_or_default();
         for device in devices {
             if let Some(info) = describe(found.len(), platform, device) {
                 found.push((platform, device, info));
@@ -180,7 +181,8 @@ fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceI
     let DeviceInfoResult::GlobalMemSize(memory_bytes) = ask(Query::GlobalMemSize)? else {
         return None;
     };
-    let DeviceInfoResult::MaxMemAllocSize(max_allocation_bytes) = ask(Query::MaxMemAllocSize)? else {
+    let DeviceInfoResult::MaxMemAllocSize(max_allocation_bytes) = ask(Query::MaxMemAllocSize)?
+    else {
         return None;
     };
     let DeviceInfoResult::MaxWorkGroupSize(max_work_group) = ask(Query::MaxWorkGroupSize)? else {

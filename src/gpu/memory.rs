@@ -49,7 +49,12 @@ impl AnyBuffer {
     ///
     /// # Errors
     /// The device has no room.
-    pub fn upload(device: &Device, what: &str, bytes: &[u8], cl_name: &'static str) -> Result<Self> {
+    pub fn upload(
+        device: &Device,
+        what: &str,
+        bytes: &[u8],
+        cl_name: &'static str,
+    ) -> Result<Self> {
         let buffer = Self::new(device, what, bytes.len(), cl_name)?;
         if !bytes.is_empty() {
             // SAFETY: blocking, so `bytes` outlives the copy.

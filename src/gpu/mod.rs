@@ -25,7 +25,11 @@ fn device_error(doing: &str, error: &ocl::core::Error) -> Error {
     let status = text
         .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
         .find(|word| word.starts_with("CL_"))
-        .unwrap_or_else(|| text.lines().find(|line| !line.trim().is_empty()).unwrap_or(""))
+        .unwrap_or_else(|| {
+            text.lines()
+                .find(|line| !line.trim().is_empty())
+                .unwrap_or("")
+        })
         .to_owned();
     let error = Error::failed(format!("OpenCL could not {doing}: {status}"));
     match status.as_str() {

@@ -1,7 +1,9 @@
 //! A pass: one kernel, its arguments checked by name, type and count when it is built.
 
 use bytemuck::bytes_of;
-use ocl::core::{self, ArgVal, Event, Kernel, KernelArgInfo, KernelArgInfoResult, KernelInfo, KernelInfoResult};
+use ocl::core::{
+    self, ArgVal, Event, Kernel, KernelArgInfo, KernelArgInfoResult, KernelInfo, KernelInfoResult,
+};
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
@@ -86,7 +88,9 @@ fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Result<()> {
     let KernelInfoResult::NumArgs(count) = core::get_kernel_info(kernel, KernelInfo::NumArgs)
         .map_err(|e| device_error("count a kernel's arguments", &e))?
     else {
-        return Err(Error::failed(format!("the pass {name} does not tell its arguments")));
+        return Err(Error::failed(format!(
+            "the pass {name} does not tell its arguments"
+        )));
     };
     if count as usize != signature.len() {
         return Err(Error::failed(format!(
@@ -102,7 +106,9 @@ fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Result<()> {
         let (KernelArgInfoResult::Name(name_there), KernelArgInfoResult::TypeName(type_there)) =
             (ask(KernelArgInfo::Name)?, ask(KernelArgInfo::TypeName)?)
         else {
-            return Err(Error::failed(format!("the pass {name} does not tell its arguments")));
+            return Err(Error::failed(format!(
+                "the pass {name} does not tell its arguments"
+            )));
         };
         let type_there = type_there.trim_start_matches("struct ").replace(' ', "");
         if name_there != parameter.name || type_there != parameter.type_name {
@@ -150,7 +156,9 @@ impl Launch<'_> {
             Some(parameter) if parameter.type_name == type_name => {
                 self.failed = core::set_kernel_arg(&self.pass.kernel, self.given as u32, arg)
                     .err()
-                    .map(|e| device_error(&format!("set '{}' of the pass {name}", parameter.name), &e));
+                    .map(|e| {
+                        device_error(&format!("set '{}' of the pass {name}", parameter.name), &e)
+                    });
             }
             Some(parameter) => {
                 self.failed = Some(Error::failed(format!(
@@ -158,7 +166,11 @@ impl Launch<'_> {
                     parameter.type_name, parameter.name
                 )));
             }
-            None => self.failed = Some(Error::failed(format!("too many arguments for the pass {name}"))),
+            None => {
+                self.failed = Some(Error::failed(format!(
+                    "too many arguments for the pass {name}"
+                )))
+            }
         }
         self.given += 1;
         self

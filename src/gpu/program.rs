@@ -38,16 +38,24 @@ pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) 
     let program = device.program(&source::flatten(path)?)?;
     let options = CString::new(defines.options())
         .map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
-    if let Err(error) = core::build_program(&program, Some(&[device.device_id()]), &options, None, None) {
-        let log = core::get_program_build_info(&program, device.device_id(), ProgramBuildInfo::BuildLog)
-            .map(|log| log.to_string())
-            .unwrap_or_else(|_| error.to_string());
-        let first_lines: Vec<&str> = log.lines().filter(|l| !l.trim().is_empty()).take(12).collect();
+    if let Err(error) =
+        core::build_program(&program, Some(&[device.device_id()]), &options, None, None)
+    {
+        let log =
+            core::get_program_build_info(&program, device.device_id(), ProgramBuildInfo::BuildLog)
+                .map(|log| log.to_string())
+                .unwrap_or_else(|_| error.to_string());
+        let first_lines: Vec<&str> = log
+            .lines()
+            .filter(|l| !l.trim().is_empty())
+            .take(12)
+            .collect();
         return Err(Error::failed(format!(
             "kernels/{path} does not build on '{}': {}",
             device.info().name,
             first_lines.join("; ")
         )));
     }
-    core::create_kernel(&program, name).map_err(|e| device_error(&format!("take the kernel {name}"), &e))
+    core::create_kernel(&program, name)
+        .map_err(|e| device_error(&format!("take the kernel {name}"), &e))
 }

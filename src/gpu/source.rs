@@ -33,9 +33,6 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/tone_curve.cl",
     "pass/window_value.cl",
     "test/abi.cl",
-    "test/refine.cl",
-    "test/spans.cl",
-    "test/transfer.cl",
 ];
 
 /// The paths of all kernel files below `kernels/`.
@@ -63,7 +60,10 @@ fn append(path: &str, included: &mut Vec<String>, text: &mut String) -> Result<(
     let file = read(path)?;
     text.push_str(&format!("#line 1 \"kernels/{path}\"\n"));
     for (number, line) in file.lines().enumerate() {
-        if let Some(name) = line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+        if let Some(name) = line
+            .strip_prefix("#include \"")
+            .and_then(|rest| rest.strip_suffix('"'))
+        {
             append(name, included, text)?;
             text.push_str(&format!("#line {} \"kernels/{path}\"\n", number + 2));
         } else if line == "#pragma once" {
@@ -98,7 +98,9 @@ mod tests {
     fn every_kernel_file_is_embedded() {
         let mut on_disk = Vec::new();
         for folder in ["lib", "pass", "test"] {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels").join(folder);
+            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("kernels")
+                .join(folder);
             for entry in std::fs::read_dir(path).unwrap() {
                 let name = entry.unwrap().file_name().into_string().unwrap();
                 on_disk.push(format!("{folder}/{name}"));
@@ -116,7 +118,11 @@ mod tests {
         assert!(text.contains("#line 1 \"kernels/lib/ray.clh\""));
         // The line after the last include is marked with its own number.
         let source = read("pass/cast_surface.cl").unwrap();
-        let after = source.lines().position(|l| l.contains("lib/octree.clh")).unwrap() + 2;
+        let after = source
+            .lines()
+            .position(|l| l.contains("lib/octree.clh"))
+            .unwrap()
+            + 2;
         assert!(text.contains(&format!("#line {after} \"kernels/pass/cast_surface.cl\"")));
     }
 

@@ -1,1 +1,15 @@
-//! Under construction.
+//! Casting a scene on an OpenCL device: the upload, the passes, the pipeline.
+
+mod abi;
+mod classify;
+mod passes;
+mod picture;
+mod pipeline;
+mod planes;
+mod rays;
+mod twins;
+mod variant;
+
+pub use pipeline::{Options, Renderer, Rendering};
+pub use twins::struct_layouts;
+pub use variant::Variant;

@@ -1,0 +1,72 @@
+//! `kernels/pass/cast_emission.cl`
+
+use crate::error::Result;
+use crate::gpu::{Buffer, input, output, value};
+use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+
+use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+
+/// A transfer function on the device, knots ascending in stored units.
+pub struct DeviceTransfer {
+    pub values: Buffer<f32>,
+    /// Linear light, opacity of the unit length in the last channel.
+    pub colors: Buffer<[f32; 4]>,
+}
+
+/// Emission and absorption along each ray: `color`, linear light, premultiplied.
+#[allow(clippy::too_many_arguments)]
+pub fn cast_emission(
+    run: &mut Run,
+    shaded: bool,
+    volume: &DeviceVolume,
+    node_class: &Buffer<u8>,
+    transfer: &DeviceTransfer,
+    rays: &RayGrid,
+    cast: &EmissionCast,
+    shading: &Shading,
+    color: &mut Buffer<[f32; 4]>,
+    counters: Option<&mut Counters>,
+) -> Result<()> {
+    let with_counters = counters.is_some();
+    let variant = run.variant;
+    let defines = variant
+        .defines()
+        .with("SHADED", switch(shaded))
+        .with("COUNTERS", switch(with_counters));
+    let pass = run.built.pass(run.device, "cast_emission", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            levels(),
+            input::<f32>("knot_values"),
+            input::<[f32; 4]>("knot_colors"),
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<EmissionCast>("cast"),
+            value::<Shading>("shading"),
+            output::<[f32; 4]>("color"),
+        ];
+        if with_counters {
+            signature.extend([output::<u32>("steps"), output::<u32>("nodes")]);
+        }
+        signature
+    })?;
+    let mut launch = pass
+        .launch(run.device)
+        .input(&volume.voxels)
+        .input(node_class)
+        .input(&volume.levels)
+        .input(&transfer.values)
+        .input(&transfer.colors)
+        .value(&volume.grid)
+        .value(rays)
+        .value(cast)
+        .value(shading)
+        .output(color);
+    if let Some(counters) = counters {
+        launch = launch
+            .output(&mut counters.steps)
+            .output(&mut counters.nodes);
+    }
+    launch.run(run.size, run.work_group, run.timings)
+}

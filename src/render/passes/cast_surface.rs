@@ -1,0 +1,69 @@
+//! `kernels/pass/cast_surface.cl`
+
+use crate::error::Result;
+use crate::gpu::{Buffer, input, output, value};
+use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
+
+use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+
+/// Depth (mm from the eye) and physical value at the hit.
+pub type Layers<'a> = (&'a mut Buffer<f32>, &'a mut Buffer<f32>);
+
+/// The first point of each ray where Φ − iso changes sign: `hit_mm` from the base plane, `kind`.
+#[allow(clippy::too_many_arguments)]
+pub fn cast_surface(
+    run: &mut Run,
+    volume: &DeviceVolume,
+    node_class: &Buffer<u8>,
+    rays: &RayGrid,
+    cast: &SurfaceCast,
+    hit_mm: &mut Buffer<f32>,
+    kind: &mut Buffer<u32>,
+    layers: Option<Layers>,
+    counters: Option<&mut Counters>,
+) -> Result<()> {
+    let (with_layers, with_counters) = (layers.is_some(), counters.is_some());
+    let variant = run.variant;
+    let defines = variant
+        .defines()
+        .with("LAYERS", switch(with_layers))
+        .with("COUNTERS", switch(with_counters));
+    let pass = run.built.pass(run.device, "cast_surface", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            levels(),
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<SurfaceCast>("cast"),
+            output::<f32>("hit_mm"),
+            output::<u32>("kind"),
+        ];
+        if with_layers {
+            signature.extend([output::<f32>("depth"), output::<f32>("value")]);
+        }
+        if with_counters {
+            signature.extend([output::<u32>("steps"), output::<u32>("nodes")]);
+        }
+        signature
+    })?;
+    let mut launch = pass
+        .launch(run.device)
+        .input(&volume.voxels)
+        .input(node_class)
+        .input(&volume.levels)
+        .value(&volume.grid)
+        .value(rays)
+        .value(cast)
+        .output(hit_mm)
+        .output(kind);
+    if let Some((depth, value)) = layers {
+        launch = launch.output(depth).output(value);
+    }
+    if let Some(counters) = counters {
+        launch = launch
+            .output(&mut counters.steps)
+            .output(&mut counters.nodes);
+    }
+    launch.run(run.size, run.work_group, run.timings)
+}

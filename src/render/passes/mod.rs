@@ -1,0 +1,126 @@
+//! One typed function per kernel of `kernels/pass`: `&` is read, `&mut` is written.
+
+mod cast_emission;
+mod cast_projection;
+mod cast_surface;
+mod shade_surface;
+mod surface_normal;
+mod tone_curve;
+mod window_value;
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::extent::ImageSize;
+use crate::gpu::{
+    AnyBuffer, Buffer, Defines, Device, Element, Parameter, Pass, Timings, input, input_of,
+};
+
+use super::abi::VolumeGrid;
+use super::variant::{Variant, voxel_cl_name};
+
+pub use cast_emission::{DeviceTransfer, cast_emission};
+pub use cast_projection::cast_projection;
+pub use cast_surface::cast_surface;
+pub use shade_surface::shade_surface;
+pub use surface_normal::surface_normal;
+pub use tone_curve::tone_curve;
+pub use window_value::window_value;
+
+/// The built passes of a renderer: each variant is built once, when it is first needed.
+#[derive(Default)]
+pub struct Built {
+    passes: HashMap<(&'static str, Defines), Pass>,
+    build_ms: f64,
+}
+
+impl Built {
+    /// Time spent building so far.
+    pub fn build_ms(&self) -> f64 {
+        self.build_ms
+    }
+
+    /// The pass `name` with these constants, built if need be.
+    pub(super) fn pass(
+        &mut self,
+        device: &Device,
+        name: &'static str,
+        defines: Defines,
+        signature: impl FnOnce() -> Vec<Parameter>,
+    ) -> Result<&Pass> {
+        let key = (name, defines);
+        if !self.passes.contains_key(&key) {
+            let start = Instant::now();
+            let pass = Pass::build(device, "pass", name, &key.1, signature())?;
+            self.build_ms += start.elapsed().as_secs_f64() * 1e3;
+            self.passes.insert(key.clone(), pass);
+        }
+        Ok(&self.passes[&key])
+    }
+}
+
+/// What all passes of one frame share.
+pub struct Run<'a> {
+    pub device: &'a Device,
+    pub built: &'a mut Built,
+    pub timings: &'a mut Timings,
+    pub size: ImageSize,
+    /// Pixels along x and y that one work-group takes.
+    pub work_group: [usize; 2],
+    pub variant: Variant,
+}
+
+impl Run<'_> {
+    /// Room for one plane of the frame; `what` names it in errors.
+    pub fn plane<T: Element>(&self, what: &str) -> Result<Buffer<T>> {
+        Buffer::new(self.device, what, self.size.pixels())
+    }
+
+    pub fn counters(&self, wanted: bool) -> Result<Option<Counters>> {
+        let room = || -> Result<Counters> {
+            Ok(Counters {
+                steps: self.plane("steps plane")?,
+                nodes: self.plane("nodes plane")?,
+            })
+        };
+        wanted.then(room).transpose()
+    }
+}
+
+/// The volume on the device.
+pub struct DeviceVolume {
+    pub grid: VolumeGrid,
+    /// Of the variant's voxel type, x fastest.
+    pub voxels: AnyBuffer,
+    /// Per octree level its nodes along x, y, z and its first node's offset.
+    pub levels: Buffer<[u32; 4]>,
+    /// Per octree node the range of its values.
+    pub node_range: Buffer<[f32; 2]>,
+}
+
+impl DeviceVolume {
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.voxels.bytes() + self.levels.bytes() + self.node_range.bytes()
+    }
+}
+
+/// Per pixel: samples taken and octree nodes tested.
+pub struct Counters {
+    pub steps: Buffer<u32>,
+    pub nodes: Buffer<u32>,
+}
+
+fn voxels(variant: Variant) -> Parameter {
+    input_of("voxels", voxel_cl_name(variant.voxel))
+}
+
+fn levels() -> Parameter {
+    input::<[u32; 4]>("levels")
+}
+
+/// A switch as the kernels' preprocessor reads it.
+fn switch(on: bool) -> u32 {
+    u32::from(on)
+}

@@ -1,0 +1,39 @@
+//! `kernels/pass/surface_normal.cl`
+
+use crate::error::Result;
+use crate::gpu::{Buffer, input, output, value};
+use crate::render::abi::{RayGrid, VolumeGrid};
+
+use super::{DeviceVolume, Run, voxels};
+
+/// The unit world-space `normal` where each ray hit, toward lower values; zero elsewhere.
+pub fn surface_normal(
+    run: &mut Run,
+    volume: &DeviceVolume,
+    rays: &RayGrid,
+    hit_mm: &Buffer<f32>,
+    kind: &Buffer<u32>,
+    normal: &mut Buffer<[f32; 4]>,
+) -> Result<()> {
+    let variant = run.variant;
+    let pass = run
+        .built
+        .pass(run.device, "surface_normal", variant.defines(), || {
+            vec![
+                voxels(variant),
+                value::<VolumeGrid>("volume"),
+                value::<RayGrid>("rays"),
+                input::<f32>("hit_mm"),
+                input::<u32>("kind"),
+                output::<[f32; 4]>("normal"),
+            ]
+        })?;
+    pass.launch(run.device)
+        .input(&volume.voxels)
+        .value(&volume.grid)
+        .value(rays)
+        .input(hit_mm)
+        .input(kind)
+        .output(normal)
+        .run(run.size, run.work_group, run.timings)
+}

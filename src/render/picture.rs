@@ -1,0 +1,220 @@
+//! The passes of each kind of picture: straight-line code, the order of lines is the schedule.
+
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::gpu::Buffer;
+use crate::octree::Octree;
+use crate::scene::{Phong, Projection, Refine, Rgb, Scene, TransferFunction, Window};
+use crate::volume::Volume;
+
+use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
+use super::classify;
+use super::passes::{
+    DeviceTransfer, DeviceVolume, Run, cast_emission, cast_projection, cast_surface, shade_surface,
+    surface_normal, window_value,
+};
+use super::planes::Planes;
+use super::twins::{self, stored};
+use super::variant::{ProjectionLoop, refine_number, traverse_number};
+
+/// What is looked at, and what is wanted of it.
+pub struct View<'a> {
+    pub scene: &'a Scene,
+    pub wanted: Wanted,
+    pub volume: &'a Volume,
+    pub octree: &'a Octree,
+    pub uploaded: &'a DeviceVolume,
+    pub rays: RayGrid,
+}
+
+impl View<'_> {
+    fn step_mm(&self) -> f32 {
+        twins::step_mm(&self.scene.sampling, self.volume) as f32
+    }
+
+    fn traverse(&self) -> u32 {
+        traverse_number(&self.scene.sampling)
+    }
+}
+
+/// `iso`: cast, normals where they are needed, shade.
+pub fn surface(
+    run: &mut Run,
+    view: &View,
+    iso: f64,
+    caps: bool,
+    refine: Refine,
+    color: Rgb,
+    phong: Option<Phong>,
+) -> Result<Planes> {
+    let wanted = view.wanted;
+    let iso = stored(view.volume.rescale(), iso);
+    let node_class = Buffer::upload(
+        run.device,
+        "octree's classes",
+        &classify::by_iso(view.octree, iso),
+    )?;
+    let cast = SurfaceCast {
+        iso,
+        step_mm: view.step_mm(),
+        caps: u32::from(caps),
+        refine: refine_number(refine),
+        iterations: refine.iterations,
+        traverse: view.traverse(),
+        pad: [0.0; 2],
+    };
+    let mut hit_mm = run.plane("hit plane")?;
+    let mut kind = run.plane("kind plane")?;
+    let mut layers = if wanted.depth || wanted.value {
+        Some((run.plane("depth plane")?, run.plane("value plane")?))
+    } else {
+        None
+    };
+    let mut counters = run.counters(wanted.counters)?;
+    cast_surface(
+        run,
+        view.uploaded,
+        &node_class,
+        &view.rays,
+        &cast,
+        &mut hit_mm,
+        &mut kind,
+        layers.as_mut().map(|(depth, value)| (depth, value)),
+        counters.as_mut(),
+    )?;
+
+    let normal = if wanted.normal || phong.is_some() {
+        let mut normal = run.plane("normal plane")?;
+        surface_normal(run, view.uploaded, &view.rays, &hit_mm, &kind, &mut normal)?;
+        Some(normal)
+    } else {
+        None
+    };
+
+    let shading = twins::shading(color, phong, view.scene.light);
+    let mut color = run.plane("colour plane")?;
+    let shaded_by = normal.as_ref().filter(|_| phong.is_some());
+    shade_surface(run, &view.rays, &shading, &kind, shaded_by, &mut color)?;
+
+    let (depth, value) = layers.unzip();
+    Ok(Planes {
+        color,
+        display: None,
+        depth,
+        normal,
+        value,
+        kind: Some(kind),
+        counters,
+        other_bytes: hit_mm.bytes() + node_class.bytes(),
+    })
+}
+
+/// `mip`, `minip`, `mean`, `lmip`: cast, then the window.
+pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) -> Result<Planes> {
+    let wanted = view.wanted;
+    let (which, sign, threshold) = match of {
+        Projection::Maximum => (ProjectionLoop::Extremum, 1.0, 0.0),
+        Projection::Minimum => (ProjectionLoop::Extremum, -1.0, 0.0),
+        Projection::Mean => (ProjectionLoop::Mean, 1.0, 0.0),
+        Projection::LocalMaximum { threshold } => (
+            ProjectionLoop::Local,
+            1.0,
+            stored(view.volume.rescale(), threshold),
+        ),
+    };
+    let cast = ProjectionCast {
+        step_mm: view.step_mm(),
+        sign,
+        threshold,
+        traverse: view.traverse(),
+    };
+    let mut kind = run.plane("kind plane")?;
+    let mut value = run.plane("value plane")?;
+    let mut depth = wanted.depth.then(|| run.plane("depth plane")).transpose()?;
+    let mut counters = run.counters(wanted.counters)?;
+    cast_projection(
+        run,
+        which,
+        view.uploaded,
+        &view.rays,
+        &cast,
+        &mut kind,
+        &mut value,
+        depth.as_mut(),
+        counters.as_mut(),
+    )?;
+
+    let mut color = run.plane("colour plane")?;
+    let window = [window.low() as f32, window.high() as f32];
+    window_value(run, &view.rays, window, &kind, &value, &mut color)?;
+    Ok(Planes {
+        color,
+        display: None,
+        depth,
+        normal: None,
+        value: Some(value),
+        kind: Some(kind),
+        counters,
+        other_bytes: 0,
+    })
+}
+
+/// `dvr`: one cast.
+pub fn emission(
+    run: &mut Run,
+    view: &View,
+    transfer: &TransferFunction,
+    phong: Option<Phong>,
+    termination: f64,
+) -> Result<Planes> {
+    let rescale = view.volume.rescale();
+    let knots = transfer.knots();
+    let values: Vec<f32> = knots.iter().map(|k| stored(rescale, k.value)).collect();
+    let colors: Vec<[f32; 4]> = knots
+        .iter()
+        .map(|k| {
+            let [r, g, b] = k.color.0.map(|c| c as f32);
+            [r, g, b, k.opacity as f32]
+        })
+        .collect();
+    let classes = classify::by_opacity(view.octree, &values, |k| colors[k][3]);
+    let node_class = Buffer::upload(run.device, "octree's classes", &classes)?;
+    let on_device = DeviceTransfer {
+        values: Buffer::upload(run.device, "transfer function", &values)?,
+        colors: Buffer::upload(run.device, "transfer function", &colors)?,
+    };
+    let cast = EmissionCast {
+        step_mm: view.step_mm(),
+        unit_length_mm: transfer.unit_length_mm() as f32,
+        most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
+        least_transmission: (1.0 - termination) as f32,
+        knots: knots.len() as u32,
+        traverse: view.traverse(),
+        pad: [0.0; 2],
+    };
+    let shading = twins::shading(Rgb::BLACK, phong, view.scene.light);
+    let mut color = run.plane("colour plane")?;
+    let mut counters = run.counters(view.wanted.counters)?;
+    cast_emission(
+        run,
+        phong.is_some(),
+        view.uploaded,
+        &node_class,
+        &on_device,
+        &view.rays,
+        &cast,
+        &shading,
+        &mut color,
+        counters.as_mut(),
+    )?;
+    Ok(Planes {
+        color,
+        display: None,
+        depth: None,
+        normal: None,
+        value: None,
+        kind: None,
+        counters,
+        other_bytes: node_class.bytes() + on_device.values.bytes() + on_device.colors.bytes(),
+    })
+}

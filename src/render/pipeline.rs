@@ -1,0 +1,180 @@
+//! One frame, from scene to planes: uploads, the picture's own passes, the tone curve, the
+//! read-back.
+
+use std::time::Instant;
+
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Wanted};
+use crate::gpu::{AnyBuffer, Buffer, Device, PassTime, Timings};
+use crate::octree::Octree;
+use crate::scene::{Picture, Sampling, Scene};
+use crate::volume::Volume;
+
+use super::passes::{Built, DeviceVolume, Run, tone_curve};
+use super::picture::{self, View};
+use super::rays::{ray_grid, volume_grid};
+use super::twins;
+use super::variant::{Variant, voxel_cl_name};
+
+/// How the device is used; never changes a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Pixels along x and y per work-group; `None` for [`Options::WORK_GROUP`].
+    pub work_group: Option<[usize; 2]>,
+}
+
+impl Options {
+    /// Small square tiles keep neighbouring rays, and the voxels that they read, together.
+    pub const WORK_GROUP: [usize; 2] = [8, 8];
+}
+
+/// A volume on a device, ready to be looked at.
+pub struct Renderer<'a> {
+    device: &'a Device,
+    volume: &'a Volume,
+    octree: &'a Octree,
+    uploaded: DeviceVolume,
+    built: Built,
+    work_group: [usize; 2],
+    upload_ms: f64,
+}
+
+/// A frame and what it cost.
+pub struct Rendering {
+    pub frame: Frame,
+    /// In launch order.
+    pub passes: Vec<PassTime>,
+    /// Building passes, for this frame.
+    pub build_ms: f64,
+    /// Uploading the volume: with its first frame, then 0.
+    pub upload_ms: f64,
+    /// Device time from the first launch's start to the last one's end.
+    pub render_ms: f64,
+    /// Held on the device while rendering.
+    pub device_bytes: u64,
+}
+
+impl<'a> Renderer<'a> {
+    /// Uploads the volume.
+    ///
+    /// # Errors
+    /// The device has no room, or cannot run work-groups of the wanted size.
+    pub fn new(
+        device: &'a Device,
+        volume: &'a Volume,
+        octree: &'a Octree,
+        options: Options,
+    ) -> Result<Self> {
+        let start = Instant::now();
+        let work_group = options.work_group.unwrap_or(Options::WORK_GROUP);
+        let most = device.info().max_work_group;
+        let pixels = work_group[0].checked_mul(work_group[1]);
+        if !pixels.is_some_and(|pixels| (1..=most).contains(&pixels)) {
+            return Err(Error::usage(format!(
+                "a work-group of {}x{} pixels: the device '{}' takes 1 to {most} in all",
+                work_group[0],
+                work_group[1],
+                device.info().name
+            )));
+        }
+        let levels: Vec<[u32; 4]> = octree
+            .levels()
+            .iter()
+            .map(|level| [level.size[0], level.size[1], level.size[2], level.offset])
+            .collect();
+        let voxel = voxel_cl_name(volume.voxels().voxel_type());
+        let uploaded = DeviceVolume {
+            grid: volume_grid(volume, levels.len() as u32),
+            voxels: AnyBuffer::upload(device, "volume", volume.voxels().bytes(), voxel)?,
+            levels: Buffer::upload(device, "octree's levels", &levels)?,
+            node_range: Buffer::upload(device, "octree's ranges", octree.ranges())?,
+        };
+        Ok(Self {
+            device,
+            volume,
+            octree,
+            uploaded,
+            built: Built::default(),
+            work_group,
+            upload_ms: start.elapsed().as_secs_f64() * 1e3,
+        })
+    }
+
+    /// Casts a scene; computes only the planes that are wanted.
+    ///
+    /// # Errors
+    /// The device fails or has no room, or the step is too small to count samples.
+    pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
+        check_step(&scene.sampling, self.volume)?;
+        let build_ms_before = self.built.build_ms();
+        let mut timings = Timings::default();
+        let mut run = Run {
+            device: self.device,
+            built: &mut self.built,
+            timings: &mut timings,
+            size: scene.size,
+            work_group: self.work_group,
+            variant: Variant::of(self.volume, self.octree, &scene.sampling),
+        };
+        let view = View {
+            scene,
+            wanted,
+            volume: self.volume,
+            octree: self.octree,
+            uploaded: &self.uploaded,
+            rays: ray_grid(&scene.camera, scene.size, self.volume),
+        };
+        let mut planes = match &scene.picture {
+            Picture::Surface {
+                iso,
+                caps,
+                refine,
+                color,
+                phong,
+            } => picture::surface(&mut run, &view, *iso, *caps, *refine, *color, *phong)?,
+            Picture::Projection { of, window } => {
+                picture::projection(&mut run, &view, *of, *window)?
+            }
+            Picture::Emission {
+                transfer,
+                phong,
+                termination,
+            } => picture::emission(&mut run, &view, transfer, *phong, *termination)?,
+        };
+        if wanted.display {
+            let mut display = run.plane("display plane")?;
+            tone_curve(
+                &mut run,
+                &view.rays,
+                &twins::tone(&scene.tone),
+                &planes.color,
+                &mut display,
+            )?;
+            planes.display = Some(display);
+        }
+        let (passes, render_ms) = timings.finish(self.device)?;
+        Ok(Rendering {
+            frame: planes.read_back(self.device, scene.size, wanted)?,
+            passes,
+            build_ms: self.built.build_ms() - build_ms_before,
+            upload_ms: std::mem::take(&mut self.upload_ms),
+            render_ms,
+            device_bytes: self.uploaded.bytes() + planes.bytes(),
+        })
+    }
+}
+
+/// Samples are counted in single precision: a ray may have at most 2^24 of them.
+fn check_step(sampling: &Sampling, volume: &Volume) -> Result<()> {
+    const MOST_SAMPLES: f64 = 16_777_216.0;
+    let (_, radius_mm) = volume.bounding_sphere();
+    let samples = 2.0 * radius_mm / twins::step_mm(sampling, volume);
+    if samples < MOST_SAMPLES {
+        return Ok(());
+    }
+    Err(Error::usage(format!(
+        "a step of {} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24",
+        sampling.step_voxels
+    ))
+    .hint("choose a larger --step"))
+}

@@ -1,0 +1,67 @@
+//! From the scene's data to the structs that kernels read; the structs' layouts for the test.
+
+use crate::scene::{Light, Phong, Rgb, Sampling, Tone as SceneTone};
+use crate::volume::{Rescale, Volume};
+
+use super::abi::{
+    self, EmissionCast, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid,
+};
+use super::variant::reflection_number;
+
+/// Name, size and field offsets, in bytes, of every struct that is shared with the kernels.
+pub fn struct_layouts() -> Vec<(&'static str, Vec<u32>)> {
+    vec![
+        ("RayGrid", RayGrid::layout()),
+        ("VolumeGrid", VolumeGrid::layout()),
+        ("SurfaceCast", SurfaceCast::layout()),
+        ("ProjectionCast", ProjectionCast::layout()),
+        ("EmissionCast", EmissionCast::layout()),
+        ("Shading", Shading::layout()),
+        ("Tone", abi::Tone::layout()),
+    ]
+}
+
+fn rgb0(color: Rgb) -> [f32; 4] {
+    let [r, g, b] = color.0.map(|c| c as f32);
+    [r, g, b, 0.0]
+}
+
+/// The step in mm: `step_voxels` of the smallest spacing.
+pub fn step_mm(sampling: &Sampling, volume: &Volume) -> f64 {
+    sampling.step_voxels * volume.geometry().smallest_spacing_mm()
+}
+
+/// A physical value in the device's stored units.
+pub fn stored(rescale: Rescale, physical: f64) -> f32 {
+    rescale.stored(physical) as f32
+}
+
+pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {
+    let numbers = phong.unwrap_or_default();
+    let toward_light = match light {
+        Light::Headlight => [0.0, 0.0, 0.0, 1.0],
+        Light::Distant { toward_light: l } => [l.x as f32, l.y as f32, l.z as f32, 0.0],
+    };
+    Shading {
+        color: rgb0(color),
+        toward_light,
+        ambient: numbers.ambient as f32,
+        diffuse: numbers.diffuse as f32,
+        specular: numbers.specular as f32,
+        shininess: numbers.shininess as f32,
+        reflection: reflection_number(phong),
+        pad_0: 0,
+        pad_1: 0,
+        pad_2: 0,
+    }
+}
+
+pub fn tone(tone: &SceneTone) -> Tone {
+    Tone {
+        background: rgb0(tone.background),
+        brightness: tone.brightness as f32,
+        contrast: tone.contrast as f32,
+        inverse_gamma: (1.0 / tone.gamma) as f32,
+        pad: 0,
+    }
+}

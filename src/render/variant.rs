@@ -1,0 +1,144 @@
+//! The switches that reshape an inner loop, and the constants that kernels take from the host.
+
+use crate::frame::Kind;
+use crate::gpu::Defines;
+use crate::octree::{Leaf, Octree};
+use crate::scene::{Filter, Phong, Refine, RefineMethod, Reflection, Sampling, Traverse};
+use crate::volume::{Volume, VoxelType};
+
+use super::classify::Class;
+
+/// What every pass over a volume is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Variant {
+    pub voxel: VoxelType,
+    pub filter: Filter,
+    pub leaf: Leaf,
+    /// More voxels than 32 bits count.
+    pub wide_index: bool,
+}
+
+/// The OpenCL name of a voxel type.
+pub fn voxel_cl_name(voxel: VoxelType) -> &'static str {
+    match voxel {
+        VoxelType::U8 => "uchar",
+        VoxelType::U16 => "ushort",
+        VoxelType::I16 => "short",
+        VoxelType::F32 => "float",
+    }
+}
+
+impl Variant {
+    pub fn of(volume: &Volume, octree: &Octree, sampling: &Sampling) -> Self {
+        Self {
+            voxel: volume.voxels().voxel_type(),
+            filter: sampling.filter,
+            leaf: octree.leaf(),
+            wide_index: volume.dims().voxels() > u64::from(u32::MAX),
+        }
+    }
+
+    /// The constants of this variant and those common to all.
+    pub fn defines(self) -> Defines {
+        let defines = Defines::default()
+            .with("VOXEL", voxel_cl_name(self.voxel))
+            .with("INDEX", if self.wide_index { "ulong" } else { "uint" })
+            .with("LEAF", format!("{}u", self.leaf))
+            .with("FILTER_LINEAR", u32::from(self.filter == Filter::Linear));
+        CONSTANTS.iter().fold(defines, |defines, &(name, number)| {
+            defines.with(name, format!("{number}u"))
+        })
+    }
+}
+
+const TRAVERSE_OFF: u32 = 0;
+
+/// How the kernels are told to traverse; `TRAVERSE_OFF` samples everything.
+pub fn traverse_number(sampling: &Sampling) -> u32 {
+    if sampling.skip {
+        traverse_constant(sampling.traverse)
+    } else {
+        TRAVERSE_OFF
+    }
+}
+
+const fn traverse_constant(traverse: Traverse) -> u32 {
+    match traverse {
+        Traverse::Uniform => 1,
+        Traverse::KdRestart => 2,
+        Traverse::Hierarchical => 3,
+    }
+}
+
+pub fn refine_number(refine: Refine) -> u32 {
+    refine_constant(refine.method)
+}
+
+const fn refine_constant(method: RefineMethod) -> u32 {
+    match method {
+        RefineMethod::None => 0,
+        RefineMethod::Bisection => 1,
+        RefineMethod::RegulaFalsi => 2,
+        RefineMethod::Illinois => 3,
+        RefineMethod::Newton => 4,
+    }
+}
+
+const REFLECTION_NONE: u32 = 0;
+
+pub fn reflection_number(phong: Option<Phong>) -> u32 {
+    phong.map_or(REFLECTION_NONE, |phong| {
+        reflection_constant(phong.reflection)
+    })
+}
+
+const fn reflection_constant(reflection: Reflection) -> u32 {
+    match reflection {
+        Reflection::Phong => 1,
+        Reflection::BlinnPhong => 2,
+    }
+}
+
+/// The loops of `cast_projection`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ProjectionLoop {
+    Extremum = 0,
+    Mean = 1,
+    Local = 2,
+}
+
+const CONSTANTS: &[(&str, u32)] = &[
+    ("KIND_NOTHING", Kind::Nothing as u32),
+    ("KIND_SURFACE", Kind::Surface as u32),
+    ("KIND_CAP", Kind::Cap as u32),
+    ("TRAVERSE_OFF", TRAVERSE_OFF),
+    ("TRAVERSE_UNIFORM", traverse_constant(Traverse::Uniform)),
+    (
+        "TRAVERSE_KD_RESTART",
+        traverse_constant(Traverse::KdRestart),
+    ),
+    (
+        "TRAVERSE_HIERARCHICAL",
+        traverse_constant(Traverse::Hierarchical),
+    ),
+    ("CLASS_BELOW", Class::Below as u32),
+    ("CLASS_ABOVE", Class::Above as u32),
+    ("CLASS_VISIT", Class::Visit as u32),
+    ("REFINE_NONE", refine_constant(RefineMethod::None)),
+    ("REFINE_BISECTION", refine_constant(RefineMethod::Bisection)),
+    (
+        "REFINE_REGULA_FALSI",
+        refine_constant(RefineMethod::RegulaFalsi),
+    ),
+    ("REFINE_ILLINOIS", refine_constant(RefineMethod::Illinois)),
+    ("REFINE_NEWTON", refine_constant(RefineMethod::Newton)),
+    ("REFLECTION_NONE", REFLECTION_NONE),
+    ("REFLECTION_PHONG", reflection_constant(Reflection::Phong)),
+    (
+        "REFLECTION_BLINN_PHONG",
+        reflection_constant(Reflection::BlinnPhong),
+    ),
+    ("PROJECTION_EXTREMUM", ProjectionLoop::Extremum as u32),
+    ("PROJECTION_MEAN", ProjectionLoop::Mean as u32),
+    ("PROJECTION_LOCAL", ProjectionLoop::Local as u32),
+];

@@ -10,6 +10,7 @@ pub mod extent;
 pub mod frame;
 pub mod gpu;
 pub mod octree;
+pub mod output;
 pub mod progress;
 pub mod reference;
 pub mod render;

@@ -1,5 +1,25 @@
-//! Image planes: the layers of one picture, row 0 at the top, x fastest.
+//! Image planes: the layers of one picture, row 0 at the top, x fastest; written as files
+//! ([`write`]) and compared with each other ([`error`]).
 
+mod channel;
+pub mod error;
+mod exr;
+mod format;
+mod jpeg;
+mod metadata;
+mod npy;
+mod percentile;
+mod png;
+mod quantize;
+mod webp;
+mod write;
+
+pub use format::{BitDepth, Encoding, Format, channels};
+pub use metadata::read_metadata;
+pub use percentile::percentile;
+pub use write::write;
+
+use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
 /// What a pixel's ray met.
@@ -36,6 +56,57 @@ pub struct Frame {
     pub kind: Option<Vec<u32>>,
 }
 
+impl Frame {
+    /// A picture in which no ray met anything, with the planes that `wanted` names.
+    pub fn nothing_hit(size: ImageSize, wanted: Wanted) -> Self {
+        fn plane<T: Clone>(wanted: bool, entry: T, size: ImageSize) -> Option<Vec<T>> {
+            wanted.then(|| vec![entry; size.pixels()])
+        }
+        Self {
+            size,
+            color: vec![[0.0; 4]; size.pixels()],
+            display: plane(wanted.display, [0.0, 0.0, 0.0, 1.0], size),
+            depth: plane(wanted.depth, f32::INFINITY, size),
+            normal: plane(wanted.normal, [0.0; 3], size),
+            value: plane(wanted.value, 0.0, size),
+            steps: plane(wanted.counters, 0, size),
+            nodes: plane(wanted.counters, 0, size),
+            kind: plane(wanted.kind, Kind::Nothing as u32, size),
+        }
+    }
+
+    /// That every plane has one entry per pixel.
+    ///
+    /// # Errors
+    /// A plane of another length, named.
+    pub fn check(&self) -> Result<()> {
+        fn entries<T>(plane: Option<&Vec<T>>) -> Option<usize> {
+            plane.map(Vec::len)
+        }
+        let planes = [
+            ("color", Some(self.color.len())),
+            ("display", entries(self.display.as_ref())),
+            ("depth", entries(self.depth.as_ref())),
+            ("normal", entries(self.normal.as_ref())),
+            ("value", entries(self.value.as_ref())),
+            ("steps", entries(self.steps.as_ref())),
+            ("nodes", entries(self.nodes.as_ref())),
+            ("kind", entries(self.kind.as_ref())),
+        ];
+        for (name, entries) in planes {
+            if let Some(entries) = entries
+                && entries != self.size.pixels()
+            {
+                return Err(Error::failed(format!(
+                    "the frame's {name} plane has {entries} entries for a picture of {}",
+                    self.size
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The layers beside the colour that a picture can carry (`--aov`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Layer {
@@ -70,6 +141,19 @@ impl Layer {
             Self::Kind => "kind",
         }
     }
+
+    /// The names of its channels in a file.
+    pub fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Depth => &["depth.Z"],
+            Self::Normal => &["normal.X", "normal.Y", "normal.Z"],
+            Self::Value => &["value.V"],
+            Self::Steps => &["steps.N"],
+            Self::Nodes => &["nodes.N"],
+            Self::Cast => &["cast.V"],
+            Self::Kind => &["kind.V"],
+        }
+    }
 }
 
 /// Which planes a renderer is asked for besides the colour.
@@ -93,4 +177,18 @@ impl Wanted {
         counters: true,
         kind: true,
     };
+
+    /// The planes that a file in `encoding` is written from; with `stats` also those that the
+    /// statistics count (steps, nodes, hits).
+    pub fn for_encoding(encoding: &Encoding, stats: bool) -> Self {
+        let carried = |layer| encoding.format.carries_layers() && encoding.layers.contains(&layer);
+        Self {
+            display: encoding.format.is_display(),
+            depth: carried(Layer::Depth),
+            normal: carried(Layer::Normal),
+            value: carried(Layer::Value),
+            counters: stats || carried(Layer::Steps) || carried(Layer::Nodes),
+            kind: stats || carried(Layer::Kind),
+        }
+    }
 }

@@ -1,0 +1,23 @@
+//! JPEG: 8-bit RGB, lossy.
+
+use std::io::Write;
+use std::path::Path;
+
+use image::codecs::jpeg::JpegEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+
+use crate::error::Result;
+
+use super::{Frame, quantize, write};
+
+pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame, quality: u8) -> Result<()> {
+    let (width, height) = (frame.size.width(), frame.size.height());
+    JpegEncoder::new_with_quality(out, quality)
+        .write_image(
+            &quantize::rgb8(frame)?,
+            width,
+            height,
+            ExtendedColorType::Rgb8,
+        )
+        .map_err(|error| write::image_failed(path, error))
+}

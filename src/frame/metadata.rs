@@ -1,0 +1,31 @@
+//! The texts that a picture carries.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+
+use super::{exr, png};
+
+/// The keys and texts in a PNG (tEXt, zTXt, iTXt) or an EXR (string attributes of the first part,
+/// sorted by key), recognised by content.
+///
+/// # Errors
+/// A file that cannot be read, is neither, or is damaged.
+pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
+    let mut magic = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(8).read_to_end(&mut magic))
+        .map_err(|cause| Error::io(path, "read", &cause))?;
+    if magic.starts_with(b"\x89PNG") {
+        png::read_metadata(path)
+    } else if magic.starts_with(b"\x76\x2f\x31\x01") {
+        exr::read_metadata(path)
+    } else {
+        Err(Error::failed(format!(
+            "{}: neither a PNG nor an EXR: no other picture carries metadata",
+            path.display()
+        )))
+    }
+}

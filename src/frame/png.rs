@@ -1,0 +1,65 @@
+//! PNG: RGB of 8 or 16 bits, sRGB, the metadata as iTXt chunks.
+
+use std::io::{BufReader, Write};
+use std::path::Path;
+
+use ::png::{ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderingIntent};
+
+use crate::error::{Error, Result};
+
+use super::{BitDepth, Frame, quantize};
+
+pub(super) fn encode(
+    out: &mut impl Write,
+    path: &Path,
+    frame: &Frame,
+    bit_depth: BitDepth,
+    metadata: &[(&str, &str)],
+) -> Result<()> {
+    let (depth, bytes) = match bit_depth {
+        BitDepth::Eight => (::png::BitDepth::Eight, quantize::rgb8(frame)?),
+        BitDepth::Sixteen => (::png::BitDepth::Sixteen, quantize::rgb16_big_endian(frame)?),
+    };
+    let run = || -> std::result::Result<(), EncodingError> {
+        let mut encoder = Encoder::new(out, frame.size.width(), frame.size.height());
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(depth);
+        encoder.set_compression(Compression::Fast);
+        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+        for (key, text) in metadata {
+            encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned())?;
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&bytes)?;
+        writer.finish()
+    };
+    run().map_err(|error| match error {
+        EncodingError::IoError(cause) => Error::io(path, "write", &cause),
+        other => Error::failed(format!("{}: cannot write: {other}", path.display())),
+    })
+}
+
+/// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.
+pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
+    let unreadable = |cause: ::png::DecodingError| {
+        Error::failed(format!("{}: not a readable PNG: {cause}", path.display()))
+    };
+    let file = std::fs::File::open(path).map_err(|e| Error::io(path, "read", &e))?;
+    let mut reader = Decoder::new(BufReader::new(file))
+        .read_info()
+        .map_err(unreadable)?;
+    // Other programs put text after the picture too.
+    reader.finish().map_err(unreadable)?;
+    let info = reader.info();
+    let mut pairs = Vec::new();
+    for chunk in &info.uncompressed_latin1_text {
+        pairs.push((chunk.keyword.clone(), chunk.text.clone()));
+    }
+    for chunk in &info.compressed_latin1_text {
+        pairs.push((chunk.keyword.clone(), chunk.get_text().map_err(unreadable)?));
+    }
+    for chunk in &info.utf8_text {
+        pairs.push((chunk.keyword.clone(), chunk.get_text().map_err(unreadable)?));
+    }
+    Ok(pairs)
+}

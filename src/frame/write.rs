@@ -1,0 +1,49 @@
+//! A frame into a file.
+
+use std::path::Path;
+
+use image::ImageError;
+
+use crate::error::{Error, Result};
+use crate::output::write_atomically;
+
+use super::channel::channels_of;
+use super::{Encoding, Format, Frame, exr, jpeg, npy, png, webp};
+
+/// Writes a picture, whole or not at all. `metadata` are keys and texts; PNG keeps them as iTXt
+/// chunks and EXR as string attributes ([`super::read_metadata`] reads both), the other formats
+/// have no place for them.
+///
+/// # Errors
+/// An [`Encoding`] that its format cannot do (usage); a frame without a plane that it needs or
+/// with planes of wrong length; a path that cannot be written.
+pub fn write(
+    path: &Path,
+    frame: &Frame,
+    encoding: &Encoding,
+    metadata: &[(&str, &str)],
+) -> Result<()> {
+    encoding.check()?;
+    frame.check()?;
+    write_atomically(path, |out| match encoding.format {
+        Format::Png => png::encode(out, path, frame, encoding.bit_depth, metadata),
+        Format::Jpeg => jpeg::encode(out, path, frame, encoding.quality),
+        Format::WebP => webp::encode(out, path, frame),
+        Format::Exr => exr::encode(
+            out,
+            path,
+            frame.size,
+            channels_of(frame, encoding)?,
+            metadata,
+        ),
+        Format::Npy => npy::encode(out, frame.size, &channels_of(frame, encoding)?)
+            .map_err(|cause| Error::io(path, "write", &cause)),
+    })
+}
+
+pub(super) fn image_failed(path: &Path, error: ImageError) -> Error {
+    match error {
+        ImageError::IoError(cause) => Error::io(path, "write", &cause),
+        other => Error::failed(format!("{}: cannot write: {other}", path.display())),
+    }
+}

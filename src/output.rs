@@ -1,0 +1,252 @@
+//! Writing a file whole or not at all.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Seek};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempPath;
+
+use crate::error::{Error, Result};
+
+const BUFFER_BYTES: usize = 1 << 18;
+
+/// Writes `path` by `fill`ing a temporary file in the same folder, which then takes its name: a
+/// reader sees the old file or the whole new one, and a failure leaves nothing behind.
+///
+/// A new file gets the permissions that the umask gives, an old one keeps its own; a symbolic link
+/// stays and its target is replaced. What is no regular file (a device, a pipe) cannot be replaced:
+/// it receives the finished bytes.
+///
+/// # Errors
+/// Those of `fill`; a folder that is missing, no folder, or not writable; `path` being a folder; a
+/// full disk. All but those of `fill` name `path`.
+pub fn write_atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+) -> Result<()> {
+    match fs::metadata(path) {
+        Ok(old) if old.is_dir() => Err(Error::failed(format!(
+            "{}: cannot write: this is a folder",
+            path.display()
+        ))
+        .hint("name a file in it")),
+        Ok(old) if !old.is_file() => pour(path, fill),
+        Ok(old) => replace(path, Some(old.permissions()), fill),
+        Err(_) => replace(path, None, fill),
+    }
+}
+
+fn replace(
+    path: &Path,
+    permissions: Option<fs::Permissions>,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+) -> Result<()> {
+    let failed = |cause: io::Error| Error::io(path, "write", &cause);
+    let target = if path.is_symlink() {
+        fs::canonicalize(path).map_err(failed)?
+    } else {
+        path.to_owned()
+    };
+    let (file, temporary) = temporary_beside(path, &target)?;
+    let file = filled(path, file, fill)?;
+    if let Some(permissions) = permissions {
+        file.set_permissions(permissions).map_err(failed)?;
+    }
+    // Some file systems report a full disk only when the data leaves the cache.
+    file.sync_data().map_err(failed)?;
+    drop(file);
+    temporary
+        .persist(&target)
+        .map_err(|refused| failed(refused.error))
+}
+
+/// `fill`s an unnamed file first, since `fill` may seek, then copies it to `path`.
+fn pour(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<()> {
+    let failed = |cause: io::Error| Error::io(path, "write", &cause);
+    let file = tempfile::tempfile().map_err(failed)?;
+    let mut file = filled(path, file, fill)?;
+    file.rewind().map_err(failed)?;
+    let mut device = File::options().write(true).open(path).map_err(failed)?;
+    io::copy(&mut file, &mut device).map_err(failed)?;
+    Ok(())
+}
+
+fn filled(
+    path: &Path,
+    file: File,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+) -> Result<File> {
+    let mut writer = BufWriter::with_capacity(BUFFER_BYTES, file);
+    fill(&mut writer)?;
+    writer
+        .into_inner()
+        .map_err(|unflushed| Error::io(path, "write", unflushed.error()))
+}
+
+fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
+    let folder = match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    if target.file_name().is_none() {
+        return Err(Error::failed(format!(
+            "cannot write to '{}': it names no file",
+            path.display()
+        )));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".unfinished-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let made = builder.tempfile_in(&folder).map_err(|cause| {
+        let error = Error::failed(format!(
+            "{}: cannot write: {}",
+            path.display(),
+            refusal(&folder, &cause)
+        ));
+        if cause.kind() == io::ErrorKind::NotFound {
+            error.hint(format!("make it first: mkdir -p '{}'", folder.display()))
+        } else {
+            error
+        }
+    })?;
+    Ok(made.into_parts())
+}
+
+fn refusal(folder: &Path, cause: &io::Error) -> String {
+    let folder_name = folder.display();
+    match cause.kind() {
+        io::ErrorKind::NotFound => format!("there is no folder '{folder_name}'"),
+        io::ErrorKind::NotADirectory => format!("'{folder_name}' is not a folder"),
+        io::ErrorKind::PermissionDenied => {
+            format!("no permission to make files in '{folder_name}'")
+        }
+        io::ErrorKind::ReadOnlyFilesystem => format!("'{folder_name}' is read-only"),
+        kind => format!("{kind} (folder '{folder_name}')"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Read, Write};
+
+    use super::*;
+
+    fn write_text(path: &Path, text: &str) -> Result<()> {
+        write_atomically(path, |out| {
+            out.write_all(text.as_bytes())
+                .map_err(|e| Error::io(path, "write", &e))
+        })
+    }
+
+    fn names_in(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_appears_whole_and_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_text(&path, "one").unwrap();
+        write_text(&path, "two").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(names_in(folder.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_text(&path, "old").unwrap();
+        for target in [path.clone(), folder.path().join("new.txt")] {
+            let error = write_atomically(&target, |out| {
+                out.write_all(&vec![7; 3 * BUFFER_BYTES]).unwrap();
+                Err(Error::failed("the source ended"))
+            })
+            .unwrap_err();
+            assert_eq!(error.to_string(), "the source ended");
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names_in(folder.path()), ["a.txt"]);
+    }
+
+    #[test]
+    fn impossible_places_are_named_in_one_sentence() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        fs::write(root.join("file"), "x").unwrap();
+        fs::create_dir(root.join("sub")).unwrap();
+        let cases = [
+            (root.join("missing/a.txt"), "there is no folder"),
+            (root.join("file/a.txt"), "is not a folder"),
+            (root.join("sub"), "this is a folder"),
+            (root.join(".."), "this is a folder"),
+            (PathBuf::new(), "names no file"),
+        ];
+        for (path, cause) in cases {
+            let error = write_text(&path, "x").unwrap_err();
+            let said = error.to_string();
+            assert!(said.contains(cause), "{said}");
+            assert!(said.contains(path.to_str().unwrap()), "{said}");
+            assert!(!said.contains('\n'), "{said}");
+            assert_eq!(error.exit_code(), 1);
+        }
+        assert_eq!(names_in(root), ["file", "sub"]);
+        assert!(names_in(&root.join("sub")).is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_new_file_has_the_permissions_any_program_gives() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        let (plain, ours) = (folder.path().join("plain"), folder.path().join("ours"));
+        File::create(&plain).unwrap();
+        write_text(&ours, "x").unwrap();
+        assert_eq!(mode(&ours), mode(&plain));
+        let temporary = tempfile::NamedTempFile::new_in(folder.path()).unwrap();
+        if mode(&plain) & 0o777 != 0o600 {
+            assert_ne!(mode(&ours), mode(temporary.path()));
+        }
+
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o640)).unwrap();
+        write_text(&ours, "y").unwrap();
+        assert_eq!(mode(&ours) & 0o777, 0o640);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_symbolic_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (real, link) = (folder.path().join("real"), folder.path().join("link"));
+        write_text(&real, "old").unwrap();
+        std::os::unix::fs::symlink("real", &link).unwrap();
+        write_text(&link, "new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(&real).unwrap(), "new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_receive_the_bytes_and_are_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        write_text(Path::new("/dev/null"), "x").unwrap();
+        let full = Path::new("/dev/full");
+        let said = write_text(full, "x").unwrap_err().to_string();
+        assert!(said.starts_with("/dev/full: cannot write: "), "{said}");
+        for device in [Path::new("/dev/null"), full] {
+            assert!(fs::metadata(device).unwrap().file_type().is_char_device());
+        }
+        let mut byte = [0];
+        assert_eq!(File::open("/dev/null").unwrap().read(&mut byte).unwrap(), 0);
+    }
+}

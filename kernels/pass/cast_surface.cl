@@ -74,9 +74,9 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
                     Bracket bracket;
                     bracket.near = lattice_t(lattice, k - 1u);
                     bracket.far = lattice_t(lattice, k);
-                    bracket.f_near = iso_distance(voxels, volume, lattice, cast.iso, bracket.near);
-                    bracket.f_far = iso_distance(voxels, volume, lattice, cast.iso, bracket.far);
-                    bracket.samples = 2u;
+                    bracket.f_near = 0.0f;
+                    bracket.f_far = 0.0f;
+                    bracket.samples = 0u;
                     hit = refine(voxels, volume, lattice, cast.iso, cast.refine, cast.iterations, &bracket);
                     met = KIND_SURFACE;
                     sample_count += bracket.samples;

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Sets up what is missing, lints host and kernels, runs every test.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/setup.sh
+# A cache of built kernels per checkout: runs of other versions cannot disturb it.
+export POCL_CACHE_DIR="${POCL_CACHE_DIR:-$PWD/target/pocl-cache}"
+mkdir -p "$POCL_CACHE_DIR"
+# Here tests that need OpenCL must not skip.
+export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}"
+
+cargo fmt --check
+cargo clippy --locked --all-targets -- -D warnings
+if cargo nextest --version >/dev/null 2>&1; then
+    cargo nextest run --locked --no-fail-fast
+else
+    cargo test --locked --no-fail-fast
+fi
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --quiet

@@ -1,0 +1,224 @@
+//! What must never change one bit of a picture: skipping, the way through the octree, the leaf's
+//! edge, the work-group's size.
+
+mod common;
+
+use angioray::frame::{Frame, Wanted};
+use angioray::octree::{Leaf, Octree};
+use angioray::progress::Silent;
+use angioray::render::{Options, Renderer};
+use angioray::scene::{
+    Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Traverse, Window,
+};
+use angioray::volume::Volume;
+use common::volume_of;
+
+const SIZE_PX: u32 = 72; // not a multiple of any work-group below but 8
+
+/// A hash of three coordinates in 0..1: noise that is the same everywhere.
+fn hash(x: f64, y: f64, z: f64) -> f64 {
+    let n = (x as u64 * 73_856_093) ^ (y as u64 * 19_349_663) ^ (z as u64 * 83_492_791);
+    (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64
+}
+
+/// Sparse curved tubes over faint noise, a size that no node edge divides.
+fn tubes() -> Volume {
+    volume_of([45, 61, 38], |x, y, z| {
+        let tube = |cx: f64, cz: f64, r: f64| {
+            let d = (x - cx - 6.0 * (y * 0.11).sin()).hypot(z - cz - 4.0 * (y * 0.17).cos());
+            (r + 0.5 - d).clamp(0.0, 1.0)
+        };
+        let bright = tube(14.0, 12.0, 2.5)
+            .max(tube(30.0, 24.0, 0.6))
+            .max(tube(22.0, 18.0, 1.2));
+        (200.0 * bright + 9.0 * hash(x, y, z)) as u8
+    })
+}
+
+fn noise() -> Volume {
+    volume_of([19, 33, 26], |x, y, z| hash(x, y, z) as f32)
+}
+
+fn pictures(range_max: f64) -> Vec<Picture> {
+    let window = Window::new(0.0, range_max).unwrap();
+    let iso = Picture::Surface {
+        iso: range_max * 0.45,
+        caps: true,
+        refine: Refine::default(),
+        color: Rgb([0.9, 0.8, 0.7]),
+        phong: Some(Phong::default()),
+    };
+    let knot = |at: f64, grey: f64, opacity: f64| Knot {
+        value: at * range_max,
+        color: Rgb([grey, grey * 0.5, 0.2]),
+        opacity,
+    };
+    let transfer = TransferFunction::new(
+        vec![
+            knot(0.2, 0.1, 0.0),
+            knot(0.5, 0.9, 0.3),
+            knot(0.8, 1.0, 0.9),
+        ],
+        1.0,
+    )
+    .unwrap();
+    let emission = |phong| Picture::Emission {
+        transfer: transfer.clone(),
+        phong,
+        termination: 0.99,
+    };
+    let projection = |of| Picture::Projection { of, window };
+    vec![
+        iso,
+        projection(Projection::Maximum),
+        projection(Projection::Minimum),
+        projection(Projection::Mean),
+        projection(Projection::LocalMaximum {
+            threshold: range_max * 0.5,
+        }),
+        emission(None),
+        emission(Some(Phong::default())),
+    ]
+}
+
+/// The planes that make up the picture: all but the counters.
+fn picture_bits(frame: &Frame) -> Vec<u32> {
+    let bits = |v: &f32| v.to_bits();
+    let mut all: Vec<u32> = frame.color.iter().flatten().map(bits).collect();
+    all.extend(frame.display.iter().flatten().flatten().map(bits));
+    all.extend(frame.depth.iter().flatten().map(bits));
+    all.extend(frame.normal.iter().flatten().flatten().map(bits));
+    all.extend(frame.value.iter().flatten().map(bits));
+    all.extend(frame.kind.iter().flatten());
+    all
+}
+
+fn total(counter: &Option<Vec<u32>>) -> u64 {
+    counter.iter().flatten().map(|&n| u64::from(n)).sum()
+}
+
+/// Renders every picture with both filters under one sampling; in a fixed order.
+fn all_frames(
+    renderer: &mut Renderer,
+    volume: &Volume,
+    skip: bool,
+    traverse: Traverse,
+) -> Vec<(String, Frame)> {
+    let mut frames = Vec::new();
+    for picture in pictures(volume.range().max) {
+        for filter in [Filter::Linear, Filter::Nearest] {
+            let mut scene = common::scene(volume, SIZE_PX, picture.clone());
+            scene.sampling.filter = filter;
+            scene.sampling.skip = skip;
+            scene.sampling.traverse = traverse;
+            let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;
+            frames.push((format!("{} {filter:?}", picture.mode()), frame));
+        }
+    }
+    frames
+}
+
+#[test]
+fn skipping_and_traversal_never_change_a_bit() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    for (name, volume) in [("tubes", tubes()), ("noise", noise())] {
+        let mut whole = Vec::new();
+        for leaf in [8, 5, 32] {
+            let octree = Octree::build(&volume, Leaf::new(leaf).unwrap(), &Silent).unwrap();
+            let mut renderer =
+                Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+            if whole.is_empty() {
+                whole = all_frames(&mut renderer, &volume, false, Traverse::Uniform);
+                for (what, frame) in &whole {
+                    assert!(
+                        frame.color.iter().any(|c| c[3] > 0.0),
+                        "{name} {what}: nothing to see"
+                    );
+                    assert_eq!(total(&frame.nodes), 0);
+                }
+            }
+            for traverse in [
+                Traverse::Uniform,
+                Traverse::KdRestart,
+                Traverse::Hierarchical,
+            ] {
+                let skipped = all_frames(&mut renderer, &volume, true, traverse);
+                for ((what, whole), (_, skipped)) in whole.iter().zip(&skipped) {
+                    let what = format!("{name} {what} leaf {leaf} {traverse:?}");
+                    assert!(picture_bits(skipped) == picture_bits(whole), "{what}");
+                    let skips = !what.contains("mean");
+                    assert_eq!(total(&skipped.nodes) > 0, skips, "{what}");
+                    if name == "tubes" && leaf <= 8 && skips && !what.contains("minip") {
+                        // Skipping is real.
+                        assert!(total(&skipped.steps) < total(&whole.steps), "{what}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn any_work_group_gives_the_same_bytes() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = tubes();
+    let octree = common::octree(&volume);
+    let frames = |work_group| {
+        let options = Options { work_group };
+        let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
+        all_frames(&mut renderer, &volume, true, Traverse::Hierarchical)
+    };
+    let first = frames(None);
+    for work_group in [[1, 1], [16, 4], [5, 3]] {
+        assert!(frames(Some(work_group)) == first, "{work_group:?}");
+    }
+}
+
+#[test]
+fn the_comparison_sees_one_voxel_changed() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let changed = volume_of([19, 33, 26], |x, y, z| {
+        hash(x, y, z) as f32
+            * if (x, y, z) == (9.0, 16.0, 13.0) {
+                1.2
+            } else {
+                1.0
+            }
+    });
+    let volume = noise();
+    assert_eq!(volume.range(), changed.range());
+    let frames = |volume: &Volume| {
+        let octree = common::octree(volume);
+        let mut renderer = Renderer::new(&device, volume, &octree, Options::default()).unwrap();
+        all_frames(&mut renderer, volume, true, Traverse::Hierarchical)
+    };
+    for ((what, a), (_, b)) in frames(&volume).iter().zip(&frames(&changed)) {
+        // What stops at the first surface cannot see a voxel in the middle of noise.
+        let seen = what.contains("mean");
+        assert!(picture_bits(a) != picture_bits(b) || !seen, "{what}");
+    }
+}
+
+#[test]
+fn impossible_work_groups_are_refused() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = noise();
+    let octree = common::octree(&volume);
+    for work_group in [[0, 8], [8, 0], [1 << 20, 1 << 20], [usize::MAX, 2]] {
+        let options = Options {
+            work_group: Some(work_group),
+        };
+        assert!(
+            Renderer::new(&device, &volume, &octree, options).is_err(),
+            "{work_group:?}"
+        );
+    }
+}

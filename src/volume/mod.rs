@@ -4,9 +4,11 @@
 
 mod buffer;
 mod geometry;
+mod read;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
+pub use read::{RawLayout, RawSize, RawType, ReadOptions, read};
 
 use glam::DVec3;
 
@@ -64,7 +66,7 @@ impl Volume {
     ///
     /// # Errors
     /// The voxel count differs from `dims`; no voxel is finite; a voxel is not finite and
-    /// `non_finite` refuses it; `rescale` is not finite.
+    /// `non_finite` refuses it; `rescale` is not finite, or makes values that are not.
     pub fn new(
         dims: Dims,
         voxels: Voxels,
@@ -96,6 +98,13 @@ impl Volume {
         volume.settle_non_finite(non_finite)?;
         volume.settle_falling_slope();
         volume.settle_exponent();
+        let range = volume.range();
+        if !range.min.is_finite() || !range.max.is_finite() {
+            return Err(Error::failed(format!(
+                "the calibration slope {}, intercept {} takes values beyond all numbers",
+                rescale.slope, rescale.intercept
+            )));
+        }
         Ok(volume)
     }
 
@@ -133,21 +142,20 @@ impl Volume {
         Ok(())
     }
 
-    /// A negative slope would turn maxima into minima: such voxels are stored calibrated.
+    /// A negative slope would turn maxima into minima: such voxels are kept negated, which is exact
+    /// in single precision, with the slope's magnitude.
     fn settle_falling_slope(&mut self) {
         if self.rescale.slope > 0.0 {
             return;
         }
-        let rescale = self.rescale;
-        self.voxels = Voxels::F32(VoxelBuffer::Owned(
-            self.voxels.to_f64_with(|v| rescale.physical(v) as f32),
-        ));
-        self.rescale = Rescale::IDENTITY;
-        self.notes.push(
-            "the calibration slope is negative: the voxels are kept calibrated, as f32".into(),
-        );
-        let (range, _) = self.voxels.scan();
-        self.stored_range = range.expect("finite voxels stay finite under a finite calibration");
+        self.voxels = Voxels::F32(VoxelBuffer::Owned(self.voxels.to_f64_with(|v| -v as f32)));
+        self.rescale.slope = -self.rescale.slope;
+        self.stored_range = Range {
+            min: -self.stored_range.max,
+            max: -self.stored_range.min,
+        };
+        self.notes
+            .push("the calibration slope is negative: the voxels are kept negated, as f32".into());
     }
 
     /// Floats of extreme magnitude are scaled by a power of two (exact but for denormals), so that

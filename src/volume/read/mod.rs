@@ -1,0 +1,127 @@
+//! Volume files to volumes. A file is recognised by what it contains; gzip around any of the
+//! formats is looked through.
+//!
+//! Each format's file turns its header into an `Array` (sizes, number type, geometry) and a
+//! `Payload` (where the bytes come from); from there on all go the same way.
+
+mod array;
+mod element;
+mod files;
+mod frames;
+mod metaimage;
+mod nifti;
+mod npz;
+mod nrrd;
+mod nrrd_axes;
+mod numpy;
+mod payload;
+mod raw;
+mod source;
+mod text;
+
+pub use raw::{RawLayout, RawSize, RawType};
+
+use std::path::Path;
+
+use self::source::Source;
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+use crate::volume::{NonFinite, Volume};
+
+/// What the user may say about reading a file.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ReadOptions {
+    /// Which volume of a series (4-D) is read; 0 is the first.
+    pub frame: u32,
+    pub non_finite: NonFinite,
+    pub raw: RawLayout,
+}
+
+/// Who asks for what.
+struct Request<'a> {
+    path: &'a Path,
+    options: &'a ReadOptions,
+    progress: &'a dyn Progress,
+}
+
+/// Reads a volume file: NRRD, MetaImage, NIfTI-1/2, NumPy (.npy, .npz) or headerless voxels, each
+/// also gzipped. Geometry comes out in mm, LPS; a file without any has spacing 1, origin 0,
+/// identity direction. Uncompressed native-endian voxels are mapped, all others decoded once.
+///
+/// # Errors
+/// `path: cause`, in one sentence: unreadable, unknown, unsupported, cut off, or lying files
+/// (failed); a frame the file does not have, an incomplete headerless description (usage).
+pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Volume> {
+    let request = Request {
+        path,
+        options,
+        progress,
+    };
+    Source::open(path)
+        .and_then(|source| read_source(source, &request))
+        .map_err(|error| error.at(path.display()))
+}
+
+fn read_source(source: Source, request: &Request) -> Result<Volume> {
+    if raw::is_asked_for(request) {
+        return raw::read(source, request);
+    }
+    let head = source.head();
+    if nrrd::is_nrrd(head) {
+        nrrd::read(source, request)
+    } else if nifti::is_nifti(head) {
+        nifti::read(source, request)
+    } else if numpy::is_npy(head) {
+        numpy::read(source, request)
+    } else if npz::is_zip(head) {
+        npz::read(&source, request)
+    } else if metaimage::is_metaimage(head) {
+        metaimage::read(source, request)
+    } else if let Some(header) = nifti::header_beside(request.path) {
+        nifti::read_header_beside(&header, request)
+    } else if raw::is_named(request.path) {
+        raw::read(source, request)
+    } else if let Some(name) = foreign_format(head) {
+        Err(
+            Error::failed(format!("this is {name}, which this version does not read"))
+                .hint("convert it to NRRD, MetaImage, NIfTI or NumPy"),
+        )
+    } else {
+        Err(raw::unrecognised(source))
+    }
+}
+
+/// Formats that are known by their first bytes but not read.
+fn foreign_format(head: &[u8]) -> Option<&'static str> {
+    const SIGNATURES: [(usize, &[u8], &str); 16] = [
+        (128, b"DICM", "a DICOM file"),
+        (0, b"II*\0", "a TIFF file"),
+        (0, b"MM\0*", "a TIFF file"),
+        (0, b"II+\0", "a BigTIFF file"),
+        (0, b"MM\0+", "a BigTIFF file"),
+        (0, b"# vtk DataFile", "a legacy VTK file"),
+        (0, b"\x89PNG\r\n\x1a\n", "a PNG picture"),
+        (0, b"\xff\xd8\xff", "a JPEG picture"),
+        (0, b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+        (0, b"CDF\x01", "a NetCDF file"),
+        (0, b"CDF\x02", "a NetCDF file"),
+        (0, b"BZh", "a bzip2-compressed file"),
+        (0, b"\xfd7zXZ\0", "an xz-compressed file"),
+        (0, b"\x28\xb5\x2f\xfd", "a zstd-compressed file"),
+        (0, b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive"),
+        (0, b"%PDF-", "a PDF document"),
+    ];
+    let by_signature = SIGNATURES.iter().find(|(offset, signature, _)| {
+        head.get(*offset..)
+            .is_some_and(|rest| rest.starts_with(signature))
+    });
+    if let Some((_, _, name)) = by_signature {
+        return Some(name);
+    }
+    let start = &head[..head.len().min(1024)];
+    let has = |needle: &[u8]| start.windows(needle.len()).any(|part| part == needle);
+    if start.trim_ascii_start().starts_with(b"<") && has(b"<VTKFile") {
+        return Some("a VTK XML file");
+    }
+    nifti::is_analyze(head).then_some("an Analyze 7.5 header, which has no orientation")
+}

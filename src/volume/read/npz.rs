@@ -1,0 +1,136 @@
+//! NumPy archives: .npz, a zip of .npy arrays, stored or deflated.
+
+use std::io::{self, Cursor, Read};
+
+use flate2::Crc;
+use flate2::bufread::DeflateDecoder;
+use zip::{CompressionMethod, ZipArchive};
+
+use super::Request;
+use super::numpy::{self, Header};
+use super::payload::{MappedBytes, Payload};
+use super::source::Source;
+use crate::error::{Error, Result};
+use crate::volume::Volume;
+
+/// What people call the array that is the volume, the likeliest first.
+const LIKELY_NAMES: [&str; 8] = [
+    "volume", "vol", "data", "image", "img", "voxels", "array", "arr_0",
+];
+
+/// The most arrays looked at.
+const MOST_ARRAYS: usize = 4096;
+
+pub(super) fn is_zip(head: &[u8]) -> bool {
+    head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06")
+}
+
+/// One array of the archive.
+struct Entry {
+    name: String,
+    header: Header,
+    payload: Payload,
+}
+
+/// Reads the archive's volume: of several arrays with three or four axes the one with the likeliest
+/// name, else the first.
+pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
+    let file = source.plain().ok_or_else(|| {
+        Error::failed("this is a zip archive inside gzip").hint("unpack it with gunzip first")
+    })?;
+    let entries = entries(file)?;
+    let count = entries.len();
+    let shapes: Vec<String> = entries
+        .iter()
+        .map(|entry| format!("{} {:?}", entry.name, entry.header.shape))
+        .collect();
+    let rank = |entry: &Entry| {
+        LIKELY_NAMES
+            .iter()
+            .position(|name| entry.name.eq_ignore_ascii_case(name))
+            .unwrap_or(LIKELY_NAMES.len())
+    };
+    // min_by_key keeps the first of equals.
+    let chosen = entries
+        .into_iter()
+        .filter(|entry| matches!(entry.header.shape.len(), 3 | 4))
+        .min_by_key(rank)
+        .ok_or_else(|| {
+            Error::failed(match count {
+                0 => "this is a zip archive without NumPy arrays: DICOM and other archives are not read by this version".to_owned(),
+                _ => format!("no array has three or four axes: {}", shapes.join(", ")),
+            })
+        })?;
+    let mut notes = Vec::new();
+    if count > 1 {
+        notes.push(format!(
+            "of the archive's {count} arrays '{}' is read",
+            chosen.name
+        ));
+    }
+    numpy::read_array(&chosen.header, chosen.payload, notes, request)
+        .map_err(|error| error.at(format!("array '{}'", chosen.name)))
+}
+
+fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
+    let damaged = |cause| Error::failed(format!("the zip archive is damaged: {cause}"));
+    let mut archive = ZipArchive::new(Cursor::new(file.as_slice())).map_err(damaged)?;
+    let mut entries = Vec::new();
+    for index in 0..archive.len().min(MOST_ARRAYS) {
+        let member = archive.by_index_raw(index).map_err(damaged)?;
+        let name = String::from_utf8_lossy(member.name_raw()).into_owned();
+        let Some(name) = name.strip_suffix(".npy") else {
+            continue;
+        };
+        let refused = |why: &str| Err(Error::failed(format!("array '{name}' is {why}")));
+        if member.encrypted() {
+            return refused("encrypted");
+        }
+        let Some(start) = member.data_start() else {
+            return refused("nowhere in the archive");
+        };
+        let bytes = file.clone().after(start)?.first(member.compressed_size());
+        let payload = match member.compression() {
+            CompressionMethod::Stored => Payload::Mapped(bytes),
+            CompressionMethod::Deflated => {
+                let length = bytes.len();
+                let checked = Checked {
+                    reader: DeflateDecoder::new(bytes),
+                    sum: Crc::new(),
+                    expected: member.crc32(),
+                };
+                Payload::unzipped(checked, length)
+            }
+            _ => return refused("compressed by a method which this version does not read"),
+        };
+        let (header, payload) =
+            Header::take(payload).map_err(|error| error.at(format!("array '{name}'")))?;
+        entries.push(Entry {
+            name: name.to_owned(),
+            header,
+            payload,
+        });
+    }
+    Ok(entries)
+}
+
+/// Compares the archive's checksum at the data's end.
+struct Checked<R> {
+    reader: R,
+    sum: Crc,
+    expected: u32,
+}
+
+impl<R: Read> Read for Checked<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.sum.update(&buffer[..count]);
+        if count == 0 && !buffer.is_empty() && self.sum.sum() != self.expected {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                "the archive's checksum disagrees",
+            ));
+        }
+        Ok(count)
+    }
+}

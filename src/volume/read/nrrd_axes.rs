@@ -1,0 +1,256 @@
+//! What the axes of an NRRD array are: space or frames, and where they lie in the world.
+
+use glam::{DMat3, DVec3};
+
+use super::array::refuse_components;
+use super::nrrd::Fields;
+use super::text::{exactly, number, numbers};
+use crate::error::{Error, Result};
+use crate::volume::Geometry;
+
+/// The array's axes, the first fastest.
+pub(super) struct Axes {
+    /// Without axes of one entry that are not space.
+    pub(super) sizes: Vec<u64>,
+    /// The axis that counts frames.
+    pub(super) frame_axis: Option<usize>,
+    /// Which of the header's axes are the volume's: at most three.
+    space_axes: Vec<usize>,
+    /// The header's axis directions; `none` where an axis is not space.
+    directions: Option<Vec<Option<Vec<f64>>>>,
+}
+
+/// The most axes: NRRD's own limit.
+const MOST_AXES: usize = 16;
+
+/// Kinds of axes whose entries are one voxel's components rather than voxels.
+fn is_colour(kind: &str) -> bool {
+    kind.ends_with("-color")
+}
+
+/// Kinds of axes that run through space or say nothing of themselves.
+fn is_domain(kind: &str) -> bool {
+    matches!(kind, "domain" | "space" | "???" | "none" | "unknown")
+}
+
+impl Axes {
+    pub(super) fn parse(fields: &Fields) -> Result<Self> {
+        let dimension: usize = number("dimension", fields.need("dimension")?)?;
+        if !(1..=MOST_AXES).contains(&dimension) {
+            return Err(Error::failed(format!("an NRRD array of {dimension} axes")));
+        }
+        let sizes: Vec<u64> = exactly("sizes", fields.need("sizes")?, dimension)?;
+        let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
+            kinds
+                .split_whitespace()
+                .map(str::to_ascii_lowercase)
+                .collect()
+        });
+        if let Some(kinds) = &kinds
+            && kinds.len() != dimension
+        {
+            return Err(Error::failed(format!(
+                "the NRRD header has {} kinds for {dimension} axes",
+                kinds.len()
+            )));
+        }
+        let directions = fields.get("spacedirections").map(vectors).transpose()?;
+        if let Some(directions) = &directions
+            && directions.len() != dimension
+        {
+            return Err(Error::failed(format!(
+                "the NRRD header has {} space directions for {dimension} axes",
+                directions.len()
+            )));
+        }
+
+        let mut space_axes: Vec<usize> = (0..dimension)
+            .filter(|&axis| match (&directions, &kinds) {
+                (Some(directions), _) => directions[axis].is_some(),
+                (None, Some(kinds)) => is_domain(&kinds[axis]),
+                (None, None) => true,
+            })
+            .collect();
+        // A fourth axis through space is time, as ITK writes series.
+        space_axes.truncate(3);
+        let others: Vec<usize> = (0..dimension)
+            .filter(|axis| !space_axes.contains(axis) && sizes[*axis] != 1)
+            .collect();
+        let frame_axis = match others[..] {
+            [] => None,
+            [axis] => Some(axis),
+            _ => {
+                return Err(Error::failed(format!(
+                    "of the NRRD array's {dimension} axes {} are not space: only one may be",
+                    others.len()
+                )));
+            }
+        };
+        if space_axes.is_empty() {
+            return Err(Error::failed(
+                "no axis of the NRRD array runs through space",
+            ));
+        }
+        let kind = |axis: usize| kinds.as_ref().map_or("", |kinds| &kinds[axis]);
+        if let Some(axis) = (0..dimension).find(|&axis| is_colour(kind(axis))) {
+            return Err(refuse_components(sizes[axis], None));
+        }
+        if let Some(axis) = frame_axis
+            && matches!(sizes[axis], 3 | 4)
+            && (kind(axis).contains("vector") || kind(axis).contains("normal"))
+        {
+            return Err(refuse_components(sizes[axis], None));
+        }
+        // Without any word on its axes, few entries first are components: no series is so thin.
+        if directions.is_none() && kinds.is_none() && dimension == 4 && matches!(sizes[0], 3 | 4) {
+            return Err(refuse_components(sizes[0], None));
+        }
+
+        let kept: Vec<usize> = (0..dimension)
+            .filter(|axis| space_axes.contains(axis) || frame_axis == Some(*axis))
+            .collect();
+        Ok(Self {
+            sizes: kept.iter().map(|&axis| sizes[axis]).collect(),
+            frame_axis: frame_axis
+                .and_then(|axis| kept.iter().position(|&kept_axis| kept_axis == axis)),
+            space_axes,
+            directions,
+        })
+    }
+
+    /// The volume's place in mm, LPS. Spaces other than the anatomical three are taken as they are,
+    /// as ITK does.
+    pub(super) fn geometry(&self, fields: &Fields, notes: &mut Vec<String>) -> Result<Geometry> {
+        note_units(fields, notes);
+        let mut columns = [DVec3::X, DVec3::Y, DVec3::Z];
+        let mut spacing_mm = DVec3::ONE;
+        let mut origin = DVec3::ZERO;
+        let space = fields.get("space").unwrap_or("");
+        if let Some(directions) = &self.directions {
+            for (index, &axis) in self.space_axes.iter().enumerate() {
+                let Some(vector) = &directions[axis] else {
+                    continue;
+                };
+                let vector = first_three("space directions", vector)?;
+                spacing_mm[index] = vector.length();
+                columns[index] = vector;
+            }
+            // A flat image's missing axis stands upright on the others.
+            if self.space_axes.len() == 2 {
+                columns[2] = columns[0].cross(columns[1]);
+            }
+        } else if let Some(text) = fields.get("spacings") {
+            let spacings: Vec<f64> = numbers("spacings", text)?;
+            for (index, &axis) in self.space_axes.iter().enumerate() {
+                let spacing = spacings.get(axis).copied().ok_or_else(|| {
+                    Error::failed(format!("the NRRD header's 'spacings: {text}' are too few"))
+                })?;
+                // NaN is NRRD's word for unknown.
+                if !spacing.is_nan() {
+                    spacing_mm[index] = spacing;
+                }
+            }
+        }
+        if let Some(text) = fields.get("spaceorigin") {
+            origin = match &vectors(text)?[..] {
+                [Some(vector)] => first_three("space origin", vector)?,
+                _ => {
+                    return Err(Error::failed(format!(
+                        "the NRRD header's 'space origin: {text}' is not one vector"
+                    )));
+                }
+            };
+        }
+        let lps = DMat3::from_diagonal(lps_signs(space));
+        let direction = lps * DMat3::from_cols(columns[0], columns[1], columns[2]);
+        Geometry::new(lps * origin, direction, spacing_mm)
+    }
+}
+
+/// The signs that take a space's axes to left, posterior, superior.
+fn lps_signs(space: &str) -> DVec3 {
+    let space = space.to_ascii_lowercase();
+    let name = space.strip_suffix("-time").unwrap_or(&space);
+    match name {
+        "right-anterior-superior" | "ras" | "rast" => DVec3::new(-1.0, -1.0, 1.0),
+        "left-anterior-superior" | "las" | "last" => DVec3::new(1.0, -1.0, 1.0),
+        _ => DVec3::ONE,
+    }
+}
+
+/// A vector's components in space: time may stand behind them, and flat images have two.
+fn first_three(field: &str, vector: &[f64]) -> Result<DVec3> {
+    match *vector {
+        [x, y] => Ok(DVec3::new(x, y, 0.0)),
+        [x, y, z] | [x, y, z, _] => Ok(DVec3::new(x, y, z)),
+        _ => Err(Error::failed(format!(
+            "the NRRD header's '{field}' have {} components",
+            vector.len()
+        ))),
+    }
+}
+
+/// `(1,0,0) none (0, 1, 0)`.
+fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
+    let wrong = || Error::failed(format!("the NRRD header's '{text}' are no vectors"));
+    let mut found = Vec::new();
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        if let Some(inside) = rest.strip_prefix('(') {
+            let (inside, after) = inside.split_once(')').ok_or_else(wrong)?;
+            let vector = inside
+                .split(',')
+                .map(|component| component.trim().parse().map_err(|_| wrong()))
+                .collect::<Result<Vec<f64>>>()?;
+            found.push(Some(vector));
+            rest = after.trim_start();
+        } else {
+            let rest_after_none = rest.strip_prefix("none").ok_or_else(wrong)?;
+            found.push(None);
+            rest = rest_after_none.trim_start();
+        }
+        if found.len() > MOST_AXES {
+            return Err(wrong());
+        }
+    }
+    Ok(found)
+}
+
+/// Lengths are taken as mm whatever the header calls them, as ITK does; the user is told.
+fn note_units(fields: &Fields, notes: &mut Vec<String>) {
+    let Some(text) = fields.get("spaceunits") else {
+        return;
+    };
+    let known = [
+        "mm",
+        "millimeter",
+        "millimeters",
+        "millimetre",
+        "",
+        "???",
+        "none",
+        "s",
+    ];
+    if let Some(unit) = text
+        .split(|c: char| c == '"' || c.is_whitespace())
+        .find(|unit| !known.contains(&unit.to_ascii_lowercase().as_str()))
+    {
+        notes.push(format!("the header's lengths in '{unit}' are taken as mm"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_parse_with_blanks_and_none() {
+        assert_eq!(
+            vectors("none (1, 0,-2.5) (0,1e1,0)").unwrap(),
+            [None, Some(vec![1.0, 0.0, -2.5]), Some(vec![0.0, 10.0, 0.0])]
+        );
+        for bad in ["(1,0", "1 0 0", "(a,b,c)", "()"] {
+            assert!(vectors(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! The voxels' bytes, wherever they lie: in a mapped file or behind a decoder.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::sync::Arc;
+
+use bzip2::bufread::MultiBzDecoder;
+use flate2::bufread::{GzDecoder, ZlibDecoder};
+use memmap2::Mmap;
+
+use super::element::Scalar;
+use super::text::TextNumbers;
+use crate::error::{Error, Result};
+
+/// A part of a mapped file, read from its start.
+#[derive(Clone)]
+pub(super) struct MappedBytes {
+    map: Arc<Mmap>,
+    start: usize,
+    end: usize,
+}
+
+impl MappedBytes {
+    pub(super) fn whole(map: Arc<Mmap>) -> Self {
+        let end = map.len();
+        Self { map, start: 0, end }
+    }
+
+    pub(super) fn map(&self) -> &Arc<Mmap> {
+        &self.map
+    }
+
+    /// Where it starts in the file.
+    pub(super) fn start(&self) -> usize {
+        self.start
+    }
+
+    pub(super) fn as_slice(&self) -> &[u8] {
+        &self.map[self.start..self.end]
+    }
+
+    pub(super) fn len(&self) -> u64 {
+        (self.end - self.start) as u64
+    }
+
+    /// Without the first `skip` bytes; fails when there are fewer.
+    pub(super) fn after(mut self, skip: u64) -> Result<Self> {
+        if skip > self.len() {
+            return Err(Error::failed(format!(
+                "the voxels should start {skip} bytes in, but only {} bytes are there",
+                self.len()
+            )));
+        }
+        self.start += skip as usize;
+        Ok(self)
+    }
+
+    /// The first `length` bytes, or all when there are fewer.
+    pub(super) fn first(mut self, length: u64) -> Self {
+        self.end = self.start + self.len().min(length) as usize;
+        self
+    }
+}
+
+impl Read for MappedBytes {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.as_slice().read(buffer)?;
+        self.start += count;
+        Ok(count)
+    }
+}
+
+impl BufRead for MappedBytes {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        Ok(self.as_slice())
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.start = (self.start + count).min(self.end);
+    }
+}
+
+/// Bytes from a header's end (or a data file's start) on.
+pub(super) enum Payload {
+    /// They lie in a file as they are.
+    Mapped(MappedBytes),
+    /// They come out of a decoder; no more than `at_most`.
+    Stream {
+        reader: Box<dyn BufRead>,
+        at_most: u64,
+    },
+}
+
+/// Deflate spends at least two bits on at most 258 bytes.
+const DEFLATE_RATIO: u64 = 258 * 8 / 2;
+
+impl Payload {
+    fn stream(reader: impl Read + 'static, at_most: u64) -> Self {
+        Self::Stream {
+            reader: Box::new(BufReader::with_capacity(1 << 16, reader)),
+            at_most,
+        }
+    }
+
+    /// What comes out of a decoder of `length` deflated bytes.
+    pub(super) fn unzipped(decoder: impl Read + 'static, length: u64) -> Self {
+        Self::stream(decoder, length.saturating_mul(DEFLATE_RATIO))
+    }
+
+    /// The reader, and how many bytes it can give at most.
+    pub(super) fn into_reader(self) -> (Box<dyn BufRead>, u64) {
+        match self {
+            Self::Mapped(bytes) => {
+                let length = bytes.len();
+                (Box::new(bytes), length)
+            }
+            Self::Stream { reader, at_most } => (reader, at_most),
+        }
+    }
+
+    /// Decoded by gzip; bytes after the last member are ignored.
+    pub(super) fn gunzip(self) -> Self {
+        let (reader, length) = self.into_reader();
+        Self::unzipped(GzipMembers::new(reader), length)
+    }
+
+    /// Decoded by zlib, or by gzip where the data say so themselves.
+    pub(super) fn inflate(self) -> Result<Self> {
+        let (mut reader, length) = self.into_reader();
+        let start = reader
+            .fill_buf()
+            .map_err(|cause| Error::failed(format!("the compressed voxels: {cause}")))?;
+        Ok(if start.starts_with(GZIP_MAGIC) {
+            Self::unzipped(GzipMembers::new(reader), length)
+        } else {
+            Self::unzipped(ZlibDecoder::new(reader), length)
+        })
+    }
+
+    pub(super) fn bunzip2(self) -> Self {
+        Self::stream(MultiBzDecoder::new(self.into_reader().0), u64::MAX)
+    }
+
+    /// Written numbers as native-endian bytes.
+    pub(super) fn numbers(self, scalar: Scalar) -> Self {
+        let (reader, length) = self.into_reader();
+        Self::stream(
+            TextNumbers::new(reader, scalar),
+            length.saturating_mul(scalar.bytes()),
+        )
+    }
+
+    /// Without the first `count` bytes.
+    ///
+    /// # Errors
+    /// There are fewer, or they are damaged.
+    pub(super) fn skip(self, count: u64) -> Result<Self> {
+        match self {
+            Self::Mapped(bytes) => Ok(Self::Mapped(bytes.after(count)?)),
+            Self::Stream {
+                mut reader,
+                at_most,
+            } => {
+                let skipped =
+                    io::copy(&mut (&mut reader).take(count), &mut io::sink()).map_err(|cause| {
+                        Error::failed(format!("the data before the voxels: {cause}"))
+                    })?;
+                if skipped < count {
+                    return Err(Error::failed(format!(
+                        "the voxels should start {count} bytes in, but only {skipped} bytes are there"
+                    )));
+                }
+                Ok(Self::Stream {
+                    reader,
+                    at_most: at_most.saturating_sub(count),
+                })
+            }
+        }
+    }
+
+    /// Without the first `count` lines.
+    pub(super) fn skip_lines(self, count: u64) -> Result<Self> {
+        let missing =
+            |line| Error::failed(format!("{count} lines to skip, but the data have {line}"));
+        match self {
+            Self::Mapped(bytes) => {
+                let mut start = 0;
+                for line in 0..count {
+                    let rest = &bytes.as_slice()[start..];
+                    let end = rest.iter().position(|&b| b == b'\n');
+                    start += end.ok_or_else(|| missing(line))? + 1;
+                }
+                Ok(Self::Mapped(bytes.after(start as u64)?))
+            }
+            Self::Stream {
+                mut reader,
+                at_most,
+            } => {
+                for line in 0..count {
+                    let read = reader
+                        .skip_until(b'\n')
+                        .map_err(|cause| Error::failed(format!("the lines to skip: {cause}")))?;
+                    if read == 0 {
+                        return Err(missing(line));
+                    }
+                }
+                Ok(Self::Stream { reader, at_most })
+            }
+        }
+    }
+
+    /// The last `count` bytes: headers of unknown size are stepped over so.
+    pub(super) fn last(self, count: u64) -> Result<Self> {
+        match self {
+            Self::Mapped(bytes) => {
+                let skip = bytes.len().checked_sub(count).ok_or_else(|| {
+                    Error::failed(format!(
+                        "{count} bytes of voxels announced, but the file has {}",
+                        bytes.len()
+                    ))
+                })?;
+                Ok(Self::Mapped(bytes.after(skip)?))
+            }
+            Self::Stream { .. } => Err(Error::failed(
+                "the voxels are to be found from the file's end, which needs an uncompressed file",
+            )
+            .hint("decompress it first")),
+        }
+    }
+}
+
+/// Gzip's mark and its only method, deflate.
+pub(super) const GZIP_MAGIC: &[u8] = b"\x1f\x8b\x08";
+
+/// Gzip members one after the other, as one; like gzip itself it ignores what follows the last
+/// (tapes and some archives pad with zeros).
+pub(super) struct GzipMembers<R> {
+    member: Option<GzDecoder<R>>,
+}
+
+impl<R: BufRead> GzipMembers<R> {
+    pub(super) fn new(reader: R) -> Self {
+        Self {
+            member: Some(GzDecoder::new(reader)),
+        }
+    }
+}
+
+impl<R: BufRead> Read for GzipMembers<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let Some(member) = &mut self.member else {
+                return Ok(0);
+            };
+            let count = member.read(buffer)?;
+            if count > 0 || buffer.is_empty() {
+                return Ok(count);
+            }
+            if let Some(mut rest) = self.member.take().map(GzDecoder::into_inner)
+                && rest.fill_buf()?.starts_with(GZIP_MAGIC)
+            {
+                self.member = Some(GzDecoder::new(rest));
+            }
+        }
+    }
+}

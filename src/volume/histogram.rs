@@ -1,0 +1,222 @@
+//! The distribution of a volume's values, and the thresholds read from it.
+
+use rayon::prelude::*;
+
+use super::{Volume, Voxel, Voxels};
+use crate::extent::Range;
+
+/// Counts of physical values in equal bins over `range`; each bin holds its lower edge, the last
+/// one its upper edge too. A volume of one value lies in the first bin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    pub range: Range,
+    pub counts: Vec<u64>,
+}
+
+impl Histogram {
+    /// `bins` bins (at least one) over the range of `volume`. Exact for whole-number voxels: no
+    /// rounding at the bins' edges.
+    pub fn of(volume: &Volume, bins: usize) -> Self {
+        let bins = bins.max(1);
+        let stored = volume.stored_range();
+        let counts = match volume.voxels() {
+            Voxels::U8(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
+            Voxels::U16(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
+            Voxels::I16(voxels) => fold(
+                &tally(voxels, |v| (i32::from(v) - i32::from(i16::MIN)) as usize),
+                i64::from(i16::MIN),
+                stored,
+                bins,
+            ),
+            Voxels::F32(voxels) => {
+                let scale = bins as f64 / stored.width();
+                tally_in(voxels, bins, |v: f32| {
+                    // A width of 0 makes this NaN, which casts to bin 0.
+                    (((f64::from(v) - stored.min) * scale) as usize).min(bins - 1)
+                })
+            }
+        };
+        Self {
+            range: volume.range(),
+            counts,
+        }
+    }
+
+    /// The number of voxels.
+    pub fn total(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    /// The lower edge of bin `bin`; of bin N, the upper edge of the last.
+    pub fn edge(&self, bin: usize) -> f64 {
+        self.range.at(bin as f64 / self.counts.len() as f64)
+    }
+
+    /// The edge between two bins that parts the values into the two classes with the greatest
+    /// variance between them: N. Otsu, "A threshold selection method from gray-level histograms",
+    /// IEEE Trans. SMC 9 (1979). Values at or above it are the upper class. Where all edges of a
+    /// gap do equally well, the gap's middle one; where there is but one class, the range's
+    /// middle.
+    pub fn otsu(&self) -> f64 {
+        let weights: Vec<f64> = self.counts.iter().map(|&count| count as f64).collect();
+        match split(&weights) {
+            Some(bin) => self.edge(bin),
+            None => self.range.at(0.5),
+        }
+    }
+
+    /// The value below which `percent` (0 to 100) of the voxels lie, values taken as evenly spread
+    /// within their bin.
+    pub fn percentile(&self, percent: f64) -> f64 {
+        let wanted = percent.clamp(0.0, 100.0) / 100.0 * self.total() as f64;
+        let mut below = 0.0;
+        for (bin, &count) in self.counts.iter().enumerate() {
+            let count = count as f64;
+            if count > 0.0 && below + count >= wanted {
+                let (lo, hi) = (self.edge(bin), self.edge(bin + 1));
+                return lo + (hi - lo) * ((wanted - below) / count).max(0.0);
+            }
+            below += count;
+        }
+        self.range.max
+    }
+
+    /// A bar chart of `width` columns (at least 40), up to 16 lines, each with the lower edge of
+    /// its values, their share of the voxels, and a bar as long as the logarithm of their count:
+    /// sparse volumes are nearly all background.
+    pub fn text(&self, width: usize) -> String {
+        const LINES: usize = 16;
+        const LABELS: usize = 24;
+        let group = self.counts.len().div_ceil(LINES);
+        let sums: Vec<u64> = self.counts.chunks(group).map(|c| c.iter().sum()).collect();
+        let height = |count: u64| (1.0 + count as f64).ln();
+        let tallest = sums.iter().map(|&sum| height(sum)).fold(1.0, f64::max);
+        let room = (width.max(40) - LABELS) as f64;
+        let total = self.total().max(1) as f64;
+        let mut text = String::new();
+        for (line, &sum) in sums.iter().enumerate() {
+            let bar = "█".repeat((room * height(sum) / tallest).round() as usize);
+            let share = format!("{:.3}%", 100.0 * sum as f64 / total);
+            let edge = short(self.edge(line * group), self.range);
+            text.push_str(format!("{edge:>12} {share:>9}  {bar}").trim_end());
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// `value` with as many decimals as tell 1/1000 of the range apart.
+fn short(value: f64, range: Range) -> String {
+    let decimals = if range.width() > 0.0 {
+        (3.0 - range.width().log10()).ceil().clamp(0.0, 9.0) as usize
+    } else {
+        3
+    };
+    let magnitude = range.min.abs().max(range.max.abs());
+    if magnitude >= 1e9 || (magnitude > 0.0 && magnitude < 1e-6) {
+        format!("{value:.3e}")
+    } else {
+        format!("{value:.decimals$}")
+    }
+}
+
+/// A value at which the isosurface of an angiogram shows its vessels; a first guess.
+///
+/// Otsu's threshold over the square roots of the counts, so that the background, which outnumbers
+/// the vessels a hundred to one, does not decide alone. Vessels fill a few percent of a volume:
+/// where more than 15 % lies above, that threshold has found the body in the air, and the upper
+/// part is split once more; the second threshold counts if it at least halves what is above (a
+/// solid object of one value is left whole).
+pub fn suggested_iso(histogram: &Histogram) -> f64 {
+    const SOLID_SHARE: f64 = 0.15;
+    let weights: Vec<f64> = histogram
+        .counts
+        .iter()
+        .map(|&count| (count as f64).sqrt())
+        .collect();
+    let above = |bin: usize| histogram.counts[bin..].iter().sum::<u64>() as f64;
+    let Some(first) = split(&weights) else {
+        return histogram.range.at(0.5);
+    };
+    let second = split(&weights[first..])
+        .map(|bin| first + bin)
+        .filter(|&bin| above(bin) <= above(first) / 2.0);
+    let is_solid = above(first) > SOLID_SHARE * histogram.total() as f64;
+    histogram.edge(second.filter(|_| is_solid).unwrap_or(first))
+}
+
+/// The first bin of the upper of two classes with the greatest variance between them; `None` where
+/// fewer than two bins are filled.
+fn split(weights: &[f64]) -> Option<usize> {
+    let total: f64 = weights.iter().sum();
+    let moment: f64 = weights.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
+    let (mut below, mut moment_below) = (0.0, 0.0);
+    let (mut best, mut first, mut last) = (0.0, 0, 0);
+    for (bin, &weight) in weights.iter().enumerate() {
+        if below > 0.0 && below < total {
+            let apart = moment_below / below - (moment - moment_below) / (total - below);
+            let variance = below * (total - below) * apart * apart;
+            if variance > best {
+                (best, first) = (variance, bin);
+            }
+            if variance == best {
+                last = bin;
+            }
+        }
+        below += weight;
+        moment_below += weight * bin as f64;
+    }
+    (best > 0.0).then_some((first + last).div_ceil(2))
+}
+
+/// How often each stored value occurs, by its key.
+fn tally<T: Voxel>(voxels: &[T], key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
+    tally_in(voxels, 1 << (8 * size_of::<T>()), key)
+}
+
+fn tally_in<T: Voxel>(voxels: &[T], keys: usize, key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
+    // Four tables by turns: runs of one value, such as background, would otherwise wait for their
+    // own last increment. Chunks are long against a table of 2^16 counts.
+    const TABLES: usize = 4;
+    voxels
+        .par_chunks(1 << 22)
+        .map(|chunk| {
+            let mut tables = vec![0_u32; TABLES * keys];
+            for quad in chunk.chunks(TABLES) {
+                for (table, &voxel) in quad.iter().enumerate() {
+                    tables[table * keys + key(voxel)] += 1;
+                }
+            }
+            let mut counts = vec![0_u64; keys];
+            for table in tables.chunks_exact(keys) {
+                for (count, &more) in counts.iter_mut().zip(table) {
+                    *count += u64::from(more);
+                }
+            }
+            counts
+        })
+        .reduce(
+            || vec![0; keys],
+            |mut sum, part| {
+                for (sum, part) in sum.iter_mut().zip(part) {
+                    *sum += part;
+                }
+                sum
+            },
+        )
+}
+
+/// The counts of single whole values (the first one's value is `first`) as bins over `stored`, in
+/// whole-number arithmetic.
+fn fold(tally: &[u64], first: i64, stored: Range, bins: usize) -> Vec<u64> {
+    let (min, max) = (stored.min as i64, stored.max as i64);
+    let width = (max - min).max(1) as u128;
+    let mut counts = vec![0; bins];
+    for (value, &count) in (first..).zip(tally) {
+        if count > 0 {
+            let bin = (value - min) as u128 * bins as u128 / width;
+            counts[(bin as usize).min(bins - 1)] += count;
+        }
+    }
+    counts
+}

@@ -220,3 +220,199 @@ fn fold(tally: &[u64], first: i64, stored: Range, bins: usize) -> Vec<u64> {
     }
     counts
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::Dims;
+    use crate::volume::{Geometry, NonFinite, Rescale};
+
+    fn volume(voxels: impl Into<Voxels>, rescale: Rescale) -> Volume {
+        let voxels = voxels.into();
+        let dims = Dims::new([voxels.len() as u64, 1, 1]).unwrap();
+        Volume::new(
+            dims,
+            voxels,
+            Geometry::default(),
+            rescale,
+            NonFinite::Refuse,
+        )
+        .unwrap()
+    }
+
+    /// Whole numbers of a sequence without a pattern.
+    fn scrambled(count: u64, modulus: u64) -> impl Iterator<Item = u64> {
+        (1..=count)
+            .map(move |n| n.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 20)
+            .map(move |n| n % modulus)
+    }
+
+    /// Bin by bin, from each bin's definition in whole numbers.
+    fn by_definition(values: &[i64], bins: i64) -> Vec<u64> {
+        let (min, max) = (*values.iter().min().unwrap(), *values.iter().max().unwrap());
+        let mut counts = vec![0; bins as usize];
+        for &value in values {
+            let bin = (0..bins)
+                .rev()
+                .find(|&bin| (value - min) * bins >= bin * (max - min))
+                .unwrap();
+            counts[bin as usize] += 1;
+        }
+        counts
+    }
+
+    #[test]
+    fn whole_number_histograms_are_exact() {
+        for bins in [1, 7, 100, 256, 1000] {
+            let i16s: Vec<i16> = scrambled(5000, 3001).map(|n| n as i16 - 1500).collect();
+            let u8s: Vec<u8> = scrambled(5000, 251).map(|n| n as u8 + 3).collect();
+            let u16s: Vec<u16> = scrambled(5000, 60_000).map(|n| n as u16).collect();
+            let wide = |v: &[i16]| v.iter().map(|&v| i64::from(v)).collect::<Vec<_>>();
+            let expected = by_definition(&wide(&i16s), bins);
+            let of = |voxels: Voxels| {
+                Histogram::of(&volume(voxels, Rescale::IDENTITY), bins as usize).counts
+            };
+            assert_eq!(of(i16s.clone().into()), expected);
+            let expected =
+                by_definition(&u8s.iter().map(|&v| i64::from(v)).collect::<Vec<_>>(), bins);
+            assert_eq!(of(u8s.into()), expected);
+            let expected = by_definition(
+                &u16s.iter().map(|&v| i64::from(v)).collect::<Vec<_>>(),
+                bins,
+            );
+            assert_eq!(of(u16s.into()), expected);
+            // The check can fail: one voxel more.
+            let mut more = i16s;
+            more.push(0);
+            assert_ne!(
+                of(more.clone().into()),
+                by_definition(&wide(&more[..5000]), bins)
+            );
+        }
+    }
+
+    #[test]
+    fn floats_and_calibrated_values_are_counted_in_physical_units() {
+        let floats = volume(vec![0.0_f32, 0.25, 0.5, 0.99, 1.0], Rescale::IDENTITY);
+        assert_eq!(Histogram::of(&floats, 2).counts, [2, 3]);
+        assert_ne!(Histogram::of(&floats, 2).counts, [3, 2]);
+        let hounsfield = Rescale {
+            slope: 2.0,
+            intercept: -1000.0,
+        };
+        let calibrated = volume(vec![0_u8, 100], hounsfield);
+        let histogram = Histogram::of(&calibrated, 4);
+        assert_eq!(
+            histogram.range,
+            Range {
+                min: -1000.0,
+                max: -800.0
+            }
+        );
+        assert_eq!(histogram.counts, [1, 0, 0, 1]);
+        assert_eq!(histogram.edge(1), -950.0);
+        let uniform = volume(vec![3.0_f32; 9], Rescale::IDENTITY);
+        assert_eq!(Histogram::of(&uniform, 4).counts, [9, 0, 0, 0]);
+        assert_eq!(Histogram::of(&uniform, 4).otsu(), 3.0);
+        assert_eq!(suggested_iso(&Histogram::of(&uniform, 4)), 3.0);
+    }
+
+    fn histogram(counts: Vec<u64>) -> Histogram {
+        let range = Range {
+            min: 0.0,
+            max: counts.len() as f64,
+        };
+        Histogram { range, counts }
+    }
+
+    #[test]
+    fn otsu_parts_two_spikes_in_the_middle() {
+        let mut counts = vec![0; 11];
+        (counts[2], counts[8]) = (1000, 10);
+        // Bins 2 and 8 end and begin at 3 and 8.
+        let threshold = histogram(counts.clone()).otsu();
+        assert!((5.0..=6.0).contains(&threshold), "{threshold}");
+        // The check can fail: move a spike, and the threshold follows.
+        counts.swap(2, 7);
+        assert_eq!(histogram(counts).otsu(), 8.0);
+    }
+
+    /// Within-class variance of every threshold, from the values themselves.
+    fn otsu_by_search(counts: &[u64]) -> usize {
+        let values: Vec<(f64, f64)> = counts
+            .iter()
+            .enumerate()
+            .map(|(i, &c)| (i as f64, c as f64))
+            .collect();
+        let scatter = |class: &[(f64, f64)]| {
+            let n: f64 = class.iter().map(|&(_, c)| c).sum();
+            let mean = class.iter().map(|&(v, c)| v * c).sum::<f64>() / n;
+            class
+                .iter()
+                .map(|&(v, c)| c * (v - mean) * (v - mean))
+                .sum::<f64>()
+        };
+        (1..counts.len())
+            .min_by(|&a, &b| {
+                let within = |cut: usize| scatter(&values[..cut]) + scatter(&values[cut..]);
+                within(a).total_cmp(&within(b))
+            })
+            .unwrap()
+    }
+
+    #[test]
+    fn otsu_finds_what_a_search_finds() {
+        for round in 0..20 {
+            let counts: Vec<u64> = scrambled(64 + round, 1000)
+                .skip(round as usize)
+                .map(|n| n + 1)
+                .collect();
+            let found = histogram(counts.clone()).otsu();
+            assert_eq!(found, otsu_by_search(&counts) as f64);
+            assert_ne!(found + 1.0, otsu_by_search(&counts) as f64);
+        }
+    }
+
+    #[test]
+    fn percentiles_follow_the_counts() {
+        let h = histogram(vec![90, 0, 5, 5]);
+        assert_eq!(h.percentile(0.0), 0.0);
+        assert_eq!(h.percentile(45.0), 0.5);
+        assert_eq!(h.percentile(90.0), 1.0);
+        assert!((h.percentile(92.5) - 2.5).abs() < 1e-12);
+        assert_eq!(h.percentile(100.0), 4.0);
+        assert_ne!(
+            h.percentile(45.0),
+            histogram(vec![90, 0, 5, 500]).percentile(45.0)
+        );
+    }
+
+    #[test]
+    fn the_suggested_iso_finds_vessels_in_a_body_and_leaves_a_solid_whole() {
+        // Air, a broad body, few bright vessels.
+        let mut counts = vec![1_u64; 100];
+        counts[0] = 700_000;
+        counts[30..40].fill(30_000);
+        counts[75..95].fill(200);
+        let iso = suggested_iso(&histogram(counts.clone()));
+        assert!((40.0..=75.0).contains(&iso), "{iso}");
+        assert!(
+            histogram(counts.clone()).otsu() < 35.0,
+            "what Otsu alone would say"
+        );
+        // A solid of one value fills 30 %.
+        let mut counts = vec![0; 100];
+        (counts[0], counts[99]) = (700_000, 300_000);
+        assert_eq!(suggested_iso(&histogram(counts)), 50.0);
+    }
+
+    #[test]
+    fn the_chart_keeps_to_its_width() {
+        let chart = histogram((0..256).map(|n| n * n).collect()).text(72);
+        assert_eq!(chart.lines().count(), 16);
+        let longest = |chart: &str| chart.lines().map(|line| line.chars().count()).max();
+        assert_eq!(longest(&chart), Some(72));
+        assert!(longest(&histogram(vec![1; 3]).text(100)) > Some(72));
+        assert_eq!(histogram(vec![0]).text(0).lines().count(), 1);
+    }
+}

@@ -136,7 +136,8 @@ impl PhantomSpec {
             return Err(Error::usage("the noise phantom takes no further noise"));
         }
         let spacing = self.spacing_mm;
-        if !(spacing.min_element() >= MIN_SPACING_MM && spacing.max_element() <= MAX_SPACING_MM) {
+        let usable = |mm: f64| (MIN_SPACING_MM..=MAX_SPACING_MM).contains(&mm);
+        if !spacing.to_array().into_iter().all(usable) {
             return Err(Error::usage(format!(
                 "a phantom's spacing of {spacing} mm: each must be {MIN_SPACING_MM:e} to {MAX_SPACING_MM:e} mm"
             )));

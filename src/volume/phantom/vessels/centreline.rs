@@ -25,10 +25,10 @@ pub(super) struct Centreline {
 }
 
 /// How far the line swerves, as a share of its length.
-const TORTUOSITY: f64 = 0.3;
+const TORTUOSITY: f64 = 0.5;
 /// The end tangents' pull, as a share of the length.
 const PULL: f64 = 0.9;
-const MAX_PIECES: f64 = 1024.0;
+const MAX_PIECES: f64 = 256.0;
 
 /// A cubic Hermite curve, plus a random swerve that vanishes at the ends with its slope. Where
 /// that leaves the box, both are halved until it does not; the straight chord never does.

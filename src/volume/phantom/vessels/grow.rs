@@ -37,7 +37,7 @@ fn radii_mm(spec: &PhantomSpec) -> Result<(f64, f64)> {
         .unwrap_or_else(|| (extent_mm / 40.0).max(2.0 * voxel_mm).min(thickest));
     let tip = spec
         .tip_radius_mm
-        .unwrap_or_else(|| (0.5 * voxel_mm).min(root));
+        .unwrap_or_else(|| (0.5 * voxel_mm).clamp(MIN_TIP_SHARE * root, root));
     if root > thickest {
         return Err(Error::usage(format!(
             "a root of {root} mm radius does not fit: at most {thickest} mm in this volume"

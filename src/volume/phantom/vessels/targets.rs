@@ -19,7 +19,8 @@ const MAX_TIPS: f64 = 1024.0;
 /// `total_flow` (at least 1), the smallest exactly 1 (where there are two tips or more).
 pub(super) fn spread(half_mm: DVec3, total_flow: f64, random: &mut Pcg64) -> Vec<Target> {
     let count = total_flow.clamp(1.0, MAX_TIPS).floor() as usize;
-    let mut excess: Vec<f64> = (0..count).map(|_| random.random()).collect();
+    // Cubed, so that most tips are fine and a few carry most of the flow.
+    let mut excess: Vec<f64> = (0..count).map(|_| random.random::<f64>().powi(3)).collect();
     excess[0] = if count == 1 { 1.0 } else { 0.0 };
     let scale = (total_flow - count as f64).max(0.0) / excess.iter().sum::<f64>();
     let mut targets: Vec<Target> = Vec::with_capacity(count);

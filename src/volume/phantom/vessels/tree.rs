@@ -56,3 +56,39 @@ pub(super) fn branching_cosines(r0: f64, r1: f64, r2: f64) -> [f64; 2] {
         cosine(s2, s1).clamp(-1.0, 1.0),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The volume of three straight vessels from a branching at (x, y) to fixed ends.
+    fn volume(ends: [([f64; 2], f64); 3], [x, y]: [f64; 2]) -> f64 {
+        let length = |[a, b]: [f64; 2]| (a - x).hypot(b - y);
+        ends.iter().map(|&(end, r)| r * r * length(end)).sum()
+    }
+
+    /// Murray's angles are where the volume is least: moving the branching any way adds to it.
+    #[test]
+    fn branching_angles_make_the_volume_least() {
+        let least = |cosines: [f64; 2], radii: [f64; 3]| {
+            let sine = |c: f64| (1.0 - c * c).sqrt();
+            let ends = [
+                ([-1.0, 0.0], radii[0]),
+                ([cosines[0], sine(cosines[0])], radii[1]),
+                ([cosines[1], -sine(cosines[1])], radii[2]),
+            ];
+            let here = volume(ends, [0.0, 0.0]);
+            (0..16).all(|n| {
+                let (sin, cos) = (f64::from(n) * 0.4).sin_cos();
+                volume(ends, [1e-3 * cos, 1e-3 * sin]) > here
+            })
+        };
+        for r1 in [0.3_f64, 0.6, 0.8, 0.95] {
+            let r2 = (1.0 - r1.powi(3)).cbrt();
+            let cosines = branching_cosines(1.0, r1, r2);
+            assert!(least(cosines, [1.0, r1, r2]), "r1 = {r1}");
+            let wider = cosines.map(|c| (c.acos() + 0.05).cos());
+            assert!(!least(wider, [1.0, r1, r2]), "r1 = {r1}, wrong angles");
+        }
+    }
+}

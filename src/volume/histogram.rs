@@ -122,8 +122,9 @@ fn short(value: f64, range: Range) -> String {
 
 /// A value at which the isosurface of an angiogram shows its vessels; a first guess.
 ///
-/// Otsu's threshold over the square roots of the counts, so that the background, which outnumbers
-/// the vessels a hundred to one, does not decide alone. Vessels fill a few percent of a volume:
+/// Otsu's threshold over the counts to the power 3/4, so that the background, which outnumbers the
+/// vessels a hundred to one, does not decide alone (tried on CT, MR and rotational angiograms: the
+/// plain counts fall into soft tissue, the square roots lose faint vessels). Vessels fill a few percent of a volume:
 /// where more than 15 % lies above, that threshold has found the body in the air, and the upper
 /// part is split once more; the second threshold counts if it at least halves what is above (a
 /// solid object of one value is left whole).
@@ -132,7 +133,7 @@ pub fn suggested_iso(histogram: &Histogram) -> f64 {
     let weights: Vec<f64> = histogram
         .counts
         .iter()
-        .map(|&count| (count as f64).sqrt())
+        .map(|&count| (count as f64).powf(0.75))
         .collect();
     let above = |bin: usize| histogram.counts[bin..].iter().sum::<u64>() as f64;
     let Some(first) = split(&weights) else {

@@ -32,6 +32,13 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(Error::failed(format!(
+            "{}: cannot write the volume: there is no folder '{}'",
+            path.display(),
+            folder.display()
+        )));
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".angioray-").suffix(".nrrd");
     // What the process's umask leaves of it, as for any new file.

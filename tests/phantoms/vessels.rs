@@ -195,6 +195,22 @@ fn vessels_fill_the_volume_and_stay_inside() {
 }
 
 #[test]
+fn a_flat_volume_has_its_tree_in_its_plane() {
+    let mut flat = spec(PhantomKind::Vessels, [96, 96, 1]);
+    flat.voxel_type = VoxelType::F32;
+    let tree = phantom(&flat).unwrap().tree.unwrap();
+    assert_eq!(structural_fault(&tree), None);
+    let [cubes, balance] = murray_misfits(&tree);
+    assert!(cubes <= 1e-9 && balance <= 1e-9, "{cubes} {balance}");
+    let off_plane = |tree: &VesselTree| {
+        let points = tree.segments.iter().flat_map(|s| &s.points_mm);
+        points.fold(0.0, |most: f64, p| most.max(p[2].abs()))
+    };
+    assert_eq!(off_plane(&tree), 0.0);
+    assert!(off_plane(&self::tree(96, 1)) > 30.0);
+}
+
+#[test]
 fn a_seed_decides_the_tree_and_its_voxels() {
     let (_, a) = vessels(48, 5);
     let (_, b) = vessels(48, 5);

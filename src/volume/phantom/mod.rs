@@ -31,8 +31,8 @@ pub struct Phantom {
 /// Makes a phantom.
 ///
 /// # Errors
-/// Usage: a shape that is not positive, or that the kind does not have. Failed: a spacing that is
-/// not positive, or more voxels than memory.
+/// Usage: a length, spacing or noise out of its domain, or one that the kind does not have. Failed:
+/// more voxels than memory, or than 16 GiB.
 pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     spec.check()?;
     let centre = spec.centre_index();

@@ -14,6 +14,7 @@ use crate::volume::VoxelType;
 pub struct PhantomSpec {
     pub kind: PhantomKind,
     pub dims: Dims,
+    /// Each 1e-6 to 1e6.
     pub spacing_mm: DVec3,
     pub voxel_type: VoxelType,
     /// Decides the vessel tree and every noise.
@@ -95,8 +96,8 @@ impl PhantomSpec {
     }
 
     /// # Errors
-    /// Usage: a length that is not positive, a noise that is negative, an axis beyond 2, a shape
-    /// parameter that the kind does not have. Failed: more voxels than a phantom may have.
+    /// Usage: a length that is not positive, an absurd spacing, a negative noise, an axis beyond 2,
+    /// a shape parameter that the kind does not have. Failed: more voxels than a phantom may have.
     pub(super) fn check(&self) -> Result<()> {
         use PhantomKind::{Blob, Noise, Slab, Sphere, Vessels};
         let lengths: [(&str, Option<f64>, &[PhantomKind]); 4] = [

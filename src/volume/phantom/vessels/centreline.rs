@@ -30,6 +30,11 @@ const TORTUOSITY: f64 = 0.5;
 const PULL: f64 = 0.9;
 const MAX_PIECES: f64 = 256.0;
 
+/// 1 along the axes in which a box has room, else 0: a flat volume's vessels lie in its plane.
+pub(super) fn free_axes(half_mm: DVec3) -> DVec3 {
+    DVec3::from_array(half_mm.to_array().map(|h| if h > 0.0 { 1.0 } else { 0.0 }))
+}
+
 /// A cubic Hermite curve, plus a random swerve that vanishes at the ends with its slope. Where
 /// that leaves the box, both are halved until it does not; the straight chord never does.
 pub(super) fn centreline(span: &Span, random: &mut Pcg64) -> Centreline {
@@ -41,7 +46,8 @@ pub(super) fn centreline(span: &Span, random: &mut Pcg64) -> Centreline {
         let mirrored = 2.0 * span.start_direction.dot(along) * along - span.start_direction;
         (mirrored + along).normalize_or(along)
     });
-    let bend = |random: &mut Pcg64| TORTUOSITY * length_mm * uniform_box(random);
+    let free = free_axes(span.half_mm);
+    let bend = |random: &mut Pcg64| TORTUOSITY * length_mm * free * uniform_box(random);
     let (swerve, swing) = (bend(random), bend(random));
     let pieces = (length_mm / span.step_mm).ceil().clamp(1.0, MAX_PIECES) as usize;
 

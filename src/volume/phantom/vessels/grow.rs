@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::super::PhantomSpec;
-use super::centreline::{Span, centreline};
+use super::centreline::{Span, centreline, free_axes};
 use super::targets::{Target, spread, uniform_box};
 use super::tree::{MURRAY_EXPONENT, VesselSegment, VesselTree, branching_cosines};
 use crate::error::{Error, Result};
@@ -68,7 +68,7 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
     let inlet = (uniform_box(&mut random) * 0.2 * (DVec3::ONE - up) - up) * half_mm;
     let mut buds = vec![Bud {
         start_mm: inlet,
-        direction: (up + 0.2 * uniform_box(&mut random)).normalize(),
+        direction: (up + 0.2 * free_axes(half_mm) * uniform_box(&mut random)).normalize(),
         targets: 0..targets.len(),
         parent: None,
         generation: 0,

@@ -4,11 +4,21 @@
 
 mod buffer;
 mod geometry;
+mod histogram;
+mod phantom;
 mod read;
+mod smooth;
+mod write_nrrd;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
+pub use histogram::{Histogram, suggested_iso};
+pub use phantom::{
+    MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment, VesselTree, phantom,
+};
 pub use read::{RawLayout, RawSize, RawType, ReadOptions, read};
+pub use smooth::smooth;
+pub use write_nrrd::write_nrrd;
 
 use glam::DVec3;
 

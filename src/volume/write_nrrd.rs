@@ -1,0 +1,124 @@
+//! A volume as an attached NRRD file (format definition: teem.sourceforge.net/nrrd/format.html).
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use glam::DVec3;
+
+use super::{Rescale, Volume, VoxelType, Voxels};
+use crate::error::{Error, Result};
+
+/// Writes `volume` to `path`: attached header, LPS space, raw or gzip encoding, the machine's
+/// byte order (named in the header; little on every machine in use). NRRD has no calibration: a
+/// calibrated volume's physical values are written, as f32.
+///
+/// The file appears under its name only when it is whole.
+///
+/// # Errors
+/// The file cannot be written; a physical value lies beyond f32.
+pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
+    let calibrated;
+    let voxels = if volume.rescale() == Rescale::IDENTITY {
+        volume.voxels()
+    } else {
+        calibrated = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
+        &calibrated
+    };
+    let cannot = |cause: io::Error| Error::io(path, "write the volume", &cause);
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(Error::failed(format!(
+            "{}: cannot write the volume: there is no folder '{}'",
+            path.display(),
+            folder.display()
+        )));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".angioray-").suffix(".nrrd");
+    // What the process's umask leaves of it, as for any new file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder).map_err(cannot)?;
+
+    let mut out = BufWriter::with_capacity(1 << 20, file.as_file());
+    let written = (|| {
+        out.write_all(header(volume, voxels.voxel_type(), gzip).as_bytes())?;
+        if gzip {
+            let mut encoder = GzEncoder::new(&mut out, Compression::default());
+            encoder.write_all(voxels.bytes())?;
+            encoder.finish()?;
+        } else {
+            out.write_all(voxels.bytes())?;
+        }
+        out.flush()
+    })();
+    drop(out);
+    written.map_err(cannot)?;
+    if fs::metadata(path).is_ok_and(|there| there.is_dir()) {
+        return Err(Error::failed(format!(
+            "{}: cannot write the volume: it is a folder",
+            path.display()
+        )));
+    }
+    file.persist(path).map_err(|error| cannot(error.error))?;
+    Ok(())
+}
+
+/// The header, its closing blank line included.
+fn header(volume: &Volume, voxel_type: VoxelType, gzip: bool) -> String {
+    let [nx, ny, nz] = volume.dims().array();
+    let world_from_index = volume.geometry().world_from_index();
+    let axes = world_from_index.matrix3;
+    let vector = |v: DVec3| format!("({},{},{})", v.x, v.y, v.z);
+    format!(
+        "NRRD0005\n\
+         type: {}\n\
+         dimension: 3\n\
+         space: left-posterior-superior\n\
+         sizes: {nx} {ny} {nz}\n\
+         space directions: {} {} {}\n\
+         kinds: domain domain domain\n\
+         endian: {}\n\
+         encoding: {}\n\
+         space origin: {}\n\
+         \n",
+        match voxel_type {
+            VoxelType::U8 => "uint8",
+            VoxelType::U16 => "uint16",
+            VoxelType::I16 => "int16",
+            VoxelType::F32 => "float",
+        },
+        vector(axes.x_axis),
+        vector(axes.y_axis),
+        vector(axes.z_axis),
+        if cfg!(target_endian = "big") {
+            "big"
+        } else {
+            "little"
+        },
+        if gzip { "gzip" } else { "raw" },
+        vector(world_from_index.translation),
+    )
+}
+
+fn physical_voxels(volume: &Volume) -> Result<Voxels> {
+    let range = volume.range();
+    if range.min.abs().max(range.max.abs()) > f64::from(f32::MAX) {
+        return Err(Error::failed(format!(
+            "the values {} to {} do not fit single precision",
+            range.min, range.max
+        )));
+    }
+    let rescale = volume.rescale();
+    Ok(Voxels::from(
+        volume
+            .voxels()
+            .to_f64_with(|stored| rescale.physical(stored) as f32),
+    ))
+}

@@ -162,14 +162,9 @@ mod tests {
 
     /// What a correct walk satisfies: it tiles the interval, and each segment's middle lies in its
     /// own box.
-    fn faults(dims: [u64; 3], filter: Filter, origin: [f64; 3], dir: [f64; 3]) -> usize {
-        let dims = Dims::new(dims).unwrap();
-        let Some(interval) = Interval::new(&IndexRay { origin, dir }, dims) else {
-            return 0;
-        };
-        let lattice = Lattice::new(dims, filter);
-        let segments: Vec<Segment> = Walk::new(lattice, &interval).collect();
-        let half = lattice.first_wall;
+    fn faults(dims: Dims, walk: Filter, judge: Filter, interval: &Interval) -> usize {
+        let segments: Vec<Segment> = Walk::new(Lattice::new(dims, walk), interval).collect();
+        let lattice = Lattice::new(dims, judge);
         let mut faults = 0;
         let mut at_mm = 0.0;
         for s in &segments {
@@ -178,7 +173,7 @@ mod tests {
             for axis in 0..3 {
                 if dims.usize()[axis] > 1 {
                     let middle = (s.p0[axis] + s.p1[axis]) / 2.0;
-                    let low = s.cell[axis] as f64 - (1.0 - half);
+                    let low = s.cell[axis] as f64 - (1.0 - lattice.first_wall);
                     let inside = middle >= low - 1e-12 && middle <= low + 1.0 + 1e-12;
                     faults += usize::from(!inside || s.cell[axis] >= lattice.count[axis]);
                 }
@@ -196,9 +191,9 @@ mod tests {
                 .wrapping_add(1);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let mut met = 0;
-        for case in 0..3000 {
-            let dims = [[7, 5, 9], [1, 6, 4], [2, 2, 2], [1, 1, 1]][case % 4];
+        let (mut met, mut caught) = (0, 0);
+        for case in 0..6000 {
+            let dims = Dims::new([[7, 5, 9], [1, 6, 4], [2, 2, 2], [1, 1, 1]][case % 4]).unwrap();
             let filter = [Filter::Linear, Filter::Nearest][case / 4 % 2];
             let mut origin = [0.0; 3].map(|_: f64| random() * 12.0 - 4.0);
             let mut dir = [0.0; 3].map(|_: f64| random() - 0.5);
@@ -213,11 +208,17 @@ mod tests {
                     dir[axis] = if dir[axis] < 0.0 { -0.25 } else { 0.25 };
                 }
             }
-            assert_eq!(faults(dims, filter, origin, dir), 0, "{origin:?} {dir:?}");
-            let ray = IndexRay { origin, dir };
-            met += usize::from(Interval::new(&ray, Dims::new(dims).unwrap()).is_some());
+            let Some(interval) = Interval::new(&IndexRay { origin, dir }, dims) else {
+                continue;
+            };
+            met += 1;
+            let found = faults(dims, filter, filter, &interval);
+            assert_eq!(found, 0, "{origin:?} {dir:?}");
+            // The other filter's boxes are not these.
+            let other = [Filter::Nearest, Filter::Linear][case / 4 % 2];
+            caught += usize::from(faults(dims, filter, other, &interval) > 0);
         }
-        assert!(met > 300, "only {met} rays met their volume");
+        assert!(met > 300 && caught > 100, "{met} met, {caught} caught");
     }
 
     #[test]

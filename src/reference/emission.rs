@@ -18,14 +18,17 @@ use super::shade::{Lighting, normal_from_gradient};
 /// The sum of the error estimates of a ray, per channel, but for [`FLOOR`] a piece. An estimate is
 /// that of the coarser of two results, of which the finer one is taken.
 const TOLERANCE: f64 = 1e-8;
-/// The estimate at which a piece is accepted however short it is: a ray has fewer than 10⁴ pieces
+/// The estimate at which a piece is accepted however short it is; a ray has fewer than 10⁵ pieces
 /// by far that need it.
 const FLOOR: f64 = 1e-13;
+/// Rounding errors of Φ along a segment, as a share of its largest corner: what they do to the
+/// integrand, no halving undoes.
+const NOISE_SHARE: f64 = 8.0 * f64::EPSILON;
 /// A piece that absorbs more than this is split before its estimate is believed: its nodes might
 /// all lie in the dark.
 const MAX_DEPTH_OF_PIECE: f64 = 4.0;
-/// A piece is halved at most this often: then its ends are one ulp apart.
-const MAX_HALVINGS: u32 = 52;
+/// A shorter piece, as a share of its segment, is not halved.
+const SHORTEST: f64 = 1e-13;
 /// Light behind this transmittance is not followed.
 const DARK: f64 = 1e-12;
 
@@ -72,6 +75,7 @@ pub fn integrate<T: Voxel>(
         }
         let stretch = Stretch {
             phi: Field::<T>::along(&corners, &segment),
+            noise: NOISE_SHARE * low.abs().max(high.abs()),
             length_mm: segment.length_mm(),
             lit: shading.map(|shading| Lit::new(field, &segment, shading)),
         };
@@ -122,11 +126,22 @@ impl Lit {
 /// The integrand on one segment.
 struct Stretch {
     phi: Cubic,
+    /// Rounding error of Φ.
+    noise: f64,
     length_mm: f64,
     lit: Option<Lit>,
 }
 
 impl Stretch {
+    /// Colour and absorption per mm at a point.
+    fn emits(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; 3], f64) {
+        let (color, absorption) = medium.at(ramp, self.phi.at(s));
+        match &self.lit {
+            Some(lit) => (lit.reflect(color, s), absorption),
+            None => (color, absorption),
+        }
+    }
+
     /// Where the integrand is not smooth, with 0 and 1, ascending.
     fn breaks(&self, medium: &Medium) -> SmallVec<[f64; 16]> {
         let mut breaks: SmallVec<[f64; 16]> = smallvec![0.0, 1.0];
@@ -176,7 +191,7 @@ struct Ray<'a> {
 impl Ray<'_> {
     fn add(&mut self, stretch: &Stretch, ramp: &Ramp, from: f64, to: f64) {
         let whole = self.panel(stretch, ramp, from, to);
-        self.refine(stretch, ramp, (from, to), whole, MAX_HALVINGS);
+        self.refine(stretch, ramp, (from, to), whole);
     }
 
     /// One step of the collocation rule.
@@ -187,11 +202,8 @@ impl Ray<'_> {
         let mut depth = [0.0; NODES];
         for i in 0..NODES {
             let s = from + (to - from) * rule.nodes[i];
-            let (c, absorption) = self.medium.at(ramp, stretch.phi.at(s));
-            color[i] = match &stretch.lit {
-                Some(lit) => lit.reflect(c, s),
-                None => c,
-            };
+            let (emitted, absorption) = stretch.emits(self.medium, ramp, s);
+            color[i] = emitted;
             depth[i] = absorption * length_mm;
         }
         let dot = |weights: &[f64; NODES]| (0..NODES).map(|j| weights[j] * depth[j]).sum::<f64>();
@@ -208,15 +220,9 @@ impl Ray<'_> {
         panel
     }
 
-    /// Adds a piece front to back: as two halves if they agree with the whole, else half by half.
-    fn refine(
-        &mut self,
-        stretch: &Stretch,
-        ramp: &Ramp,
-        (from, to): (f64, f64),
-        whole: Panel,
-        halvings: u32,
-    ) {
+    /// Adds a piece front to back: as two halves if they agree with the whole, else half by half;
+    /// a piece too short to halve, as one of constant colour.
+    fn refine(&mut self, stretch: &Stretch, ramp: &Ramp, (from, to): (f64, f64), whole: Panel) {
         if self.transmittance < DARK {
             return;
         }
@@ -229,17 +235,27 @@ impl Ray<'_> {
         });
         let leaves = |panel: Panel| (-panel.depth).exp();
         let estimate = off + self.brightest * (leaves(whole) - leaves(halves)).abs();
-        let allowed = (self.tolerance_per_mm * stretch.length_mm * (to - from)).max(FLOOR);
-        let believed =
-            halves.depth <= MAX_DEPTH_OF_PIECE && self.transmittance * estimate <= allowed;
-        if believed || halvings == 0 {
-            for (sum, c) in self.color.iter_mut().zip(halves.color) {
-                *sum += self.transmittance * c;
-            }
-            self.transmittance *= leaves(halves);
+        let length_mm = stretch.length_mm * (to - from);
+        let allowed = (self.tolerance_per_mm * length_mm).max(FLOOR);
+        let noise = self.medium.noise_per_mm(ramp, stretch.noise) * length_mm;
+        let agree = self.transmittance * estimate <= allowed || estimate <= noise;
+        if agree && halves.depth <= MAX_DEPTH_OF_PIECE {
+            self.gather(halves.color, leaves(halves));
+        } else if to - from > SHORTEST {
+            self.refine(stretch, ramp, (from, middle), first);
+            self.refine(stretch, ramp, (middle, to), second);
         } else {
-            self.refine(stretch, ramp, (from, middle), first, halvings - 1);
-            self.refine(stretch, ramp, (middle, to), second, halvings - 1);
+            let (color, _) = stretch.emits(self.medium, ramp, middle);
+            let left = leaves(halves);
+            self.gather(color.map(|c| c * (1.0 - left)), left);
         }
+    }
+
+    /// Adds the light of the next piece, which lets `left` of the light behind it through.
+    fn gather(&mut self, color: [f64; 3], left: f64) {
+        for (sum, c) in self.color.iter_mut().zip(color) {
+            *sum += self.transmittance * c;
+        }
+        self.transmittance *= left;
     }
 }

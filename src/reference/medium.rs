@@ -110,6 +110,15 @@ impl Medium {
         &self.levels[first..end.max(first)]
     }
 
+    /// What an error `noise` of Φ may do to the absorption of a range.
+    pub fn noise_per_mm(&self, ramp: &Ramp, noise: f64) -> f64 {
+        if ramp.width == 0.0 {
+            return 0.0;
+        }
+        let opacity = ramp.below.opacity.max(ramp.above.opacity);
+        self.transfer.absorption_per_mm(opacity) * (noise / ramp.width).min(1.0)
+    }
+
     /// Colour (linear light, not premultiplied) and absorption per mm.
     pub fn at(&self, ramp: &Ramp, value: f64) -> ([f64; 3], f64) {
         let (color, opacity) = ramp.at(value);

@@ -52,6 +52,18 @@ impl Cubic {
         (3.0 * d * s + 2.0 * c) * s + b
     }
 
+    /// The Bézier ordinates of the part between two parameters: their hull holds its values.
+    pub fn hull(&self, from: f64, to: f64) -> [f64; 4] {
+        let third = (to - from) / 3.0;
+        let (a, b) = (self.at(from), self.at(to));
+        [
+            a,
+            a + third * self.slope(from),
+            b - third * self.slope(to),
+            b,
+        ]
+    }
+
     /// The mean over [0, 1].
     pub fn mean(&self) -> f64 {
         let [a, b, c, d] = self.0;
@@ -179,6 +191,24 @@ mod tests {
         assert_eq!(ends.len(), 3);
         assert!((ends[1] - 1e-9).abs() < 1e-20);
         assert_eq!(Cubic([7.0, 0.0, 0.0, 0.0]).monotone_ends().len(), 2);
+    }
+
+    #[test]
+    fn the_hull_holds_the_values() {
+        let c = with_roots([0.2, 0.5, 1.5], 3.0);
+        let (from, to) = (0.125, 0.75);
+        let hull = c.hull(from, to);
+        // De Casteljau's algorithm on the hull gives the polynomial.
+        for f in [0.0, 0.3, 0.9] {
+            let mut points = hull;
+            for last in (1..4).rev() {
+                for i in 0..last {
+                    points[i] += (points[i + 1] - points[i]) * f;
+                }
+            }
+            assert!((points[0] - c.at(from + (to - from) * f)).abs() < 1e-14);
+            assert!((points[0] - c.at(from + (to - from) * f + 1e-6)).abs() > 1e-14);
+        }
     }
 
     #[test]

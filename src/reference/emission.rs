@@ -17,10 +17,10 @@ use super::shade::{Lighting, normal_from_gradient};
 
 /// The sum of the error estimates of a ray, per channel, but for [`FLOOR`] a piece. An estimate is
 /// that of the coarser of two results, of which the finer one is taken.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-7;
 /// The estimate at which a piece is accepted however short it is; a ray has fewer than 10⁵ pieces
 /// by far that need it.
-const FLOOR: f64 = 1e-13;
+const FLOOR: f64 = 1e-12;
 /// Rounding errors of Φ along a segment, as a share of its largest corner: what they do to the
 /// integrand, no halving undoes.
 const NOISE_SHARE: f64 = 8.0 * f64::EPSILON;
@@ -29,6 +29,8 @@ const NOISE_SHARE: f64 = 8.0 * f64::EPSILON;
 const MAX_DEPTH_OF_PIECE: f64 = 4.0;
 /// A shorter piece, as a share of its segment, is not halved.
 const SHORTEST: f64 = 1e-13;
+/// The cosine within which a piece's normals must lie before its estimate is believed.
+const STEADY: f64 = 0.8;
 /// Light behind this transmittance is not followed.
 const DARK: f64 = 1e-12;
 
@@ -120,6 +122,17 @@ impl Lit {
         let gradient = DVec3::from_array(self.gradient_world.map(|c| c.at(s)));
         let normal = normal_from_gradient(gradient, self.lighting.to_viewer);
         self.lighting.reflect(color, normal)
+    }
+
+    /// Whether the normal surely turns little on a piece: a swing where the gradient almost
+    /// vanishes might lie between all nodes. The gradient lies in the hull of its Bézier points.
+    fn is_steady(&self, from: f64, to: f64) -> bool {
+        let [x, y, z] = self.gradient_world.map(|c| c.hull(from, to));
+        let points: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
+        let middle: DVec3 = points.iter().sum();
+        points
+            .iter()
+            .all(|p| p.dot(middle) >= STEADY * p.length() * middle.length())
     }
 }
 
@@ -238,15 +251,20 @@ impl Ray<'_> {
         let length_mm = stretch.length_mm * (to - from);
         let allowed = (self.tolerance_per_mm * length_mm).max(FLOOR);
         let noise = self.medium.noise_per_mm(ramp, stretch.noise) * length_mm;
+        let left = leaves(halves);
         let agree = self.transmittance * estimate <= allowed || estimate <= noise;
-        if agree && halves.depth <= MAX_DEPTH_OF_PIECE {
-            self.gather(halves.color, leaves(halves));
+        let is_steady = || match &stretch.lit {
+            Some(lit) => lit.is_steady(from, to),
+            None => true,
+        };
+        let is_faint = self.transmittance * self.brightest * (1.0 - left) <= FLOOR;
+        if agree && halves.depth <= MAX_DEPTH_OF_PIECE && (is_faint || is_steady()) {
+            self.gather(halves.color, left);
         } else if to - from > SHORTEST {
             self.refine(stretch, ramp, (from, middle), first);
             self.refine(stretch, ramp, (middle, to), second);
         } else {
             let (color, _) = stretch.emits(self.medium, ramp, middle);
-            let left = leaves(halves);
             self.gather(color.map(|c| c * (1.0 - left)), left);
         }
     }

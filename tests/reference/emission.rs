@@ -338,3 +338,52 @@ fn the_nearest_filter_composites_the_voxels_boxes() {
     let linear = cast_scene(&steps, &scene, at(-1.0), at(9.0)).color;
     assert!(worst(linear, [light, light, light, 1.0 - through]) > 1e-4);
 }
+
+#[test]
+fn sharp_highlights_between_the_nodes_are_found() {
+    let mut random = Random(31);
+    let phong = Phong {
+        shininess: 400.0,
+        specular: 1.0,
+        ..Phong::default()
+    };
+    for _ in 0..40 {
+        let noise = random.noise(4, oblique(false), 10.0);
+        let ray = random_ray(&mut random, &noise);
+        let scene = scene(dvr(bumpy(), Some(phong)));
+        let exact = cast_scene(&noise, &scene, ray.0, ray.1).color;
+        let light = -(ray.1 - ray.0).normalize();
+        let brute = |steps: u32| brute_force(&noise, &bumpy(), Some((&phong, light)), ray, steps);
+        let off = worst(brute(10_000), exact);
+        assert!(off < 1e-6, "{off}");
+        assert!(worst(brute(100), exact) > 1e-6);
+    }
+}
+
+#[test]
+fn a_normal_that_swings_round_in_a_moment_is_resolved() {
+    // ∇Φ = (2 (x − c), δ, 0): in the middle plane it swings from −x to +x within w = δ/2 of c.
+    let (c, delta) = (2.375, 2.0_f64.powi(-16));
+    let swing = volume([6, 5, 5], Geometry::default(), |p| {
+        (p.x - c).powi(2) + delta * p.y
+    });
+    let phong = Phong {
+        ambient: 0.0,
+        diffuse: 1.0,
+        specular: 0.0,
+        ..Phong::default()
+    };
+    let tf = transfer(&[knot(0.0, [1.0; 3], 0.5)], 1.0);
+    let at = |x: f64| DVec3::new(x, 2.0, 2.0);
+    let seen = cast(&swing, dvr(tf, Some(phong)), at(-1.0), at(9.0)).color;
+    // ∫ 1 − |u|/√(u² + w²) du = 2w is missing from the light of an always facing surface.
+    let kappa = 2.0_f64.ln();
+    let facing = 1.0 - (-5.0 * kappa).exp();
+    let missing = delta * kappa * (-kappa * c).exp();
+    assert!(
+        (seen[0] - (facing - missing)).abs() < 1e-8,
+        "{} {missing}",
+        seen[0] - facing
+    );
+    assert!((seen[0] - facing).abs() > 1e-6);
+}

@@ -1,0 +1,99 @@
+//! Φ and its gradient inside one box of the lattice, as polynomials along a ray.
+
+use crate::extent::Dims;
+use crate::scene::Filter;
+use crate::volume::{Rescale, Voxel};
+
+use super::cells::{Lattice, Segment};
+use super::cubic::Cubic;
+
+/// The physical values of a volume under a reconstruction filter.
+pub struct Field<'a, T> {
+    voxels: &'a [T],
+    dims: [usize; 3],
+    rescale: Rescale,
+    filter: Filter,
+    pub lattice: Lattice,
+}
+
+impl<'a, T: Voxel> Field<'a, T> {
+    /// `voxels` holds `dims.voxels()` values, x fastest.
+    pub fn new(voxels: &'a [T], dims: Dims, rescale: Rescale, filter: Filter) -> Self {
+        Self {
+            voxels,
+            dims: dims.usize(),
+            rescale,
+            filter,
+            lattice: Lattice::new(dims, filter),
+        }
+    }
+
+    /// The values at a box's corners, x fastest. With the nearest filter all are the voxel's own:
+    /// a constant is a trilinear field too.
+    pub fn corners(&self, cell: [usize; 3]) -> [f64; 8] {
+        let [nx, ny, nz] = self.dims;
+        let stride = [1, nx, nx * ny];
+        let base = cell[0] + cell[1] * stride[1] + cell[2] * stride[2];
+        let value = |index: usize| self.rescale.physical(self.voxels[index].into());
+        if self.filter == Filter::Nearest {
+            return [value(base); 8];
+        }
+        // An axis with a single voxel is constant along itself.
+        let step = |axis: usize, n: usize| if n > 1 { stride[axis] } else { 0 };
+        let (x, y, z) = (step(0, nx), step(1, ny), step(2, nz));
+        [0, x, y, x + y, z, z + x, z + y, z + x + y].map(|offset| value(base + offset))
+    }
+
+    /// Φ along a segment, from its box's corners.
+    pub fn along(corners: &[f64; 8], segment: &Segment) -> Cubic {
+        let local = |p: f64, axis: usize| p - segment.cell[axis] as f64;
+        let p: [f64; 3] = std::array::from_fn(|a| local(segment.p0[a], a));
+        let d: [f64; 3] = std::array::from_fn(|a| segment.p1[a] - segment.p0[a]);
+        Cubic::along(corners, p, d)
+    }
+
+    /// The index-space gradient along a segment: per axis `(Φ(clamp(p + e)) − Φ(clamp(p − e)))/2`,
+    /// e one voxel, clamped to the domain. Divided by 2 at the border too.
+    pub fn gradient(&self, segment: &Segment) -> [Cubic; 3] {
+        std::array::from_fn(|axis| {
+            let ahead = self.shifted(segment, axis, true).0;
+            let behind = self.shifted(segment, axis, false).0;
+            Cubic(std::array::from_fn(|k| 0.5 * (ahead[k] - behind[k])))
+        })
+    }
+
+    /// Φ along a segment moved by one voxel along an axis, clamped to the domain: past the last
+    /// (first) box it slides along the domain's face.
+    fn shifted(&self, segment: &Segment, axis: usize, ahead: bool) -> Cubic {
+        let mut moved = *segment;
+        let last = self.lattice.count[axis] - 1;
+        let (delta, outside) = if ahead {
+            (1.0, segment.cell[axis] == last)
+        } else {
+            (-1.0, segment.cell[axis] == 0)
+        };
+        if outside {
+            let face = if ahead { self.dims[axis] - 1 } else { 0 };
+            moved.p0[axis] = face as f64;
+            moved.p1[axis] = face as f64;
+        } else {
+            moved.p0[axis] += delta;
+            moved.p1[axis] += delta;
+            moved.cell[axis] = if ahead {
+                segment.cell[axis] + 1
+            } else {
+                segment.cell[axis] - 1
+            };
+        }
+        Self::along(&self.corners(moved.cell), &moved)
+    }
+}
+
+/// The smallest and largest of a box's corners bound Φ inside it.
+pub fn bounds(corners: &[f64; 8]) -> (f64, f64) {
+    corners
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &v| {
+            (lo.min(v), hi.max(v))
+        })
+}

@@ -1,0 +1,88 @@
+//! The isosurface: where Φ ≥ iso first changes along a ray.
+
+use crate::frame::Kind;
+use crate::volume::Voxel;
+
+use super::cells::{Segment, Walk};
+use super::field::{Field, bounds};
+use super::interval::{Face, Interval};
+
+/// A point of the isosurface, or of a cap.
+#[derive(Debug, Clone, Copy)]
+pub struct Crossing {
+    /// From the interval's start.
+    pub at_mm: f64,
+    /// Φ there; with the nearest filter, of the box behind the wall.
+    pub value: f64,
+    /// ∇Φ in index space; 0 on a cap.
+    pub gradient: [f64; 3],
+    /// The face whose normal a cap has.
+    pub cap: Option<Face>,
+}
+
+impl Crossing {
+    pub fn kind(&self) -> Kind {
+        if self.cap.is_some() {
+            Kind::Cap
+        } else {
+            Kind::Surface
+        }
+    }
+}
+
+/// The first change of "Φ ≥ iso" on the interval, and the number of boxes walked. With `caps`, a
+/// ray that enters through a face where Φ ≥ iso hits there.
+///
+/// A field that touches the iso value from below in one point is hit where the polynomial's
+/// turning point, as computed, reaches iso.
+pub fn first_crossing<T: Voxel>(
+    field: &Field<T>,
+    interval: &Interval,
+    iso: f64,
+    caps: bool,
+) -> (Option<Crossing>, u32) {
+    let mut walked = 0;
+    let mut inside = None;
+    for segment in Walk::new(field.lattice, interval) {
+        walked += 1;
+        let corners = field.corners(segment.cell);
+        let (low, high) = bounds(&corners);
+        if inside == Some(false) && high < iso || inside == Some(true) && low >= iso {
+            continue;
+        }
+        let phi = Field::<T>::along(&corners, &segment);
+        let start = phi.at(0.0);
+        let inside = *inside.get_or_insert(start >= iso);
+        let crossing = |s: f64| Crossing {
+            at_mm: segment.at_mm(s),
+            value: phi.at(s),
+            gradient: gradient_at(field, &segment, s),
+            cap: None,
+        };
+        if walked == 1 && inside && caps && interval.face.is_some() {
+            let cap = Crossing {
+                at_mm: 0.0,
+                value: start,
+                gradient: [0.0; 3],
+                cap: interval.face,
+            };
+            return (Some(cap), walked);
+        }
+        // A wall of the nearest filter; or a level within the last bit of Φ at a cell face.
+        if (start >= iso) != inside {
+            return (Some(crossing(0.0)), walked);
+        }
+        let ends = phi.monotone_ends();
+        for ends in ends.windows(2) {
+            if (phi.at(ends[1]) >= iso) != inside {
+                let s = phi.crossing(iso, ends[0], ends[1]);
+                return (Some(crossing(s)), walked);
+            }
+        }
+    }
+    (None, walked)
+}
+
+fn gradient_at<T: Voxel>(field: &Field<T>, segment: &Segment, s: f64) -> [f64; 3] {
+    field.gradient(segment).map(|component| component.at(s))
+}

@@ -1,0 +1,203 @@
+//! One ray through one scene: what it sees, in double precision.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result};
+use crate::frame::Kind;
+use crate::scene::{Picture, Projection, Ray, Scene, Window, linear_from_srgb};
+use crate::volume::{Volume, Voxel};
+use crate::with_voxels;
+
+use super::emission::{self, Shading};
+use super::field::Field;
+use super::interval::{Face, IndexRay, Interval};
+use super::medium::Medium;
+use super::projection::project;
+use super::shade::{Lighting, normal_from_gradient};
+use super::surface::{Crossing, first_crossing};
+
+/// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
+/// rising and falling are told apart.
+const NOISE_SHARE: f64 = 1e-13;
+
+/// What a ray sees; all 0 and the depth +∞ where it sees nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Linear light, premultiplied, without background.
+    pub color: [f64; 4],
+    /// mm from the ray's origin; +∞: none.
+    pub depth_mm: f64,
+    /// Unit, world space, toward lower values; 0 where there is no surface.
+    pub normal_world: DVec3,
+    /// Φ at the hit, or the projected value; physical.
+    pub value: f64,
+    /// Boxes walked.
+    pub cells: u32,
+    pub kind: Kind,
+}
+
+impl Sight {
+    const NOTHING: Self = Self {
+        color: [0.0; 4],
+        depth_mm: f64::INFINITY,
+        normal_world: DVec3::ZERO,
+        value: 0.0,
+        cells: 0,
+        kind: Kind::Nothing,
+    };
+}
+
+/// A volume and a scene, prepared for casting rays. Of the scene it uses the picture, the light
+/// and the filter; step, refinement, traversal and early termination are the device's alone.
+pub struct Tracer<'a> {
+    volume: &'a Volume,
+    scene: &'a Scene,
+    origin_world: DVec3,
+    index_from_world: DMat3,
+    noise: f64,
+    medium: Option<Medium>,
+}
+
+impl<'a> Tracer<'a> {
+    /// # Errors
+    /// The volume's values or its geometry leave the range of double precision.
+    pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
+        let range = volume.range();
+        let magnitude = range.min.abs().max(range.max.abs());
+        if !(magnitude * 1e3).is_finite() {
+            return Err(Error::failed(format!(
+                "the volume's values, {} to {}, are too large to compute with",
+                range.min, range.max
+            )));
+        }
+        let index_from_world = volume.geometry().index_from_world().matrix3;
+        if !index_from_world.is_finite() {
+            return Err(Error::failed(format!(
+                "the spacing {} mm is too small to compute with",
+                volume.geometry().spacing_mm()
+            )));
+        }
+        Ok(Self {
+            volume,
+            scene,
+            origin_world: volume.geometry().origin_mm(),
+            index_from_world,
+            noise: magnitude * NOISE_SHARE,
+            medium: match &scene.picture {
+                Picture::Emission { transfer, .. } => Some(Medium::new(transfer)),
+                _ => None,
+            },
+        })
+    }
+
+    /// What one ray sees. Its direction is a unit vector in world space.
+    pub fn cast(&self, ray: Ray) -> Sight {
+        // Relative to the volume's origin, so that a far one costs no digits.
+        let origin_index = self.index_from_world * (ray.origin_world - self.origin_world);
+        let index_ray = IndexRay {
+            origin: origin_index.to_array(),
+            dir: (self.index_from_world * ray.dir_world).to_array(),
+        };
+        let Some(interval) = Interval::new(&index_ray, self.volume.dims()) else {
+            return Sight::NOTHING;
+        };
+        with_voxels!(self.volume.voxels(), voxels => {
+            let field = Field::new(
+                voxels,
+                self.volume.dims(),
+                self.volume.rescale(),
+                self.scene.sampling.filter,
+            );
+            self.see(&field, &interval, ray.dir_world)
+        })
+    }
+
+    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
+        match &self.scene.picture {
+            Picture::Surface { iso, caps, .. } => {
+                let (crossing, cells) = first_crossing(field, interval, *iso, *caps);
+                let seen = crossing.map_or(Sight::NOTHING, |crossing| {
+                    self.surface(&crossing, interval, dir_world)
+                });
+                Sight { cells, ..seen }
+            }
+            Picture::Projection { of, window } => self.projection(field, interval, *of, *window),
+            Picture::Emission { .. } => self.emission(field, interval, dir_world),
+        }
+    }
+
+    fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> Sight {
+        let normal_world = match crossing.cap {
+            Some(face) => self.outward_normal(face),
+            None => {
+                let gradient = DVec3::from_array(crossing.gradient);
+                normal_from_gradient(self.gradient_world_from_index() * gradient, -dir_world)
+            }
+        };
+        let Picture::Surface { color, phong, .. } = &self.scene.picture else {
+            return Sight::NOTHING;
+        };
+        let [r, g, b] = match phong {
+            Some(phong) => {
+                Lighting::new(*phong, self.scene.light, dir_world).reflect(color.0, normal_world)
+            }
+            None => color.0,
+        };
+        Sight {
+            color: [r, g, b, 1.0],
+            depth_mm: interval.enter_mm + crossing.at_mm,
+            normal_world,
+            value: crossing.value,
+            cells: 0,
+            kind: crossing.kind(),
+        }
+    }
+
+    fn projection<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        interval: &Interval,
+        of: Projection,
+        window: Window,
+    ) -> Sight {
+        let projected = project(field, interval, of, self.noise);
+        let grey = linear_from_srgb(window.grey_srgb(projected.value));
+        Sight {
+            color: [grey, grey, grey, 1.0],
+            depth_mm: interval.enter_mm + projected.at_mm,
+            normal_world: DVec3::ZERO,
+            value: projected.value,
+            cells: projected.walked,
+            kind: Kind::Surface,
+        }
+    }
+
+    fn emission<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
+        let (Some(medium), Picture::Emission { phong, .. }) = (&self.medium, &self.scene.picture)
+        else {
+            return Sight::NOTHING;
+        };
+        let shading = phong.map(|phong| Shading {
+            lighting: Lighting::new(phong, self.scene.light, dir_world),
+            gradient_world_from_index: self.gradient_world_from_index(),
+        });
+        let emitted = emission::integrate(field, interval, medium, shading.as_ref());
+        let [r, g, b] = emitted.color;
+        Sight {
+            color: [r, g, b, 1.0 - emitted.transmittance],
+            cells: emitted.walked,
+            ..Sight::NOTHING
+        }
+    }
+
+    /// The inverse transpose of world_from_index's linear part.
+    fn gradient_world_from_index(&self) -> DMat3 {
+        self.index_from_world.transpose()
+    }
+
+    fn outward_normal(&self, face: Face) -> DVec3 {
+        let mut outward = DVec3::ZERO;
+        outward[face.axis] = if face.low { -1.0 } else { 1.0 };
+        (self.gradient_world_from_index() * outward).normalize_or_zero()
+    }
+}

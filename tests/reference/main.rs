@@ -1,0 +1,9 @@
+//! The reference renderer against closed forms and against brute force written independently of it.
+
+mod common;
+mod degenerate;
+mod emission;
+mod invariance;
+mod picture;
+mod projection;
+mod surface;

@@ -82,7 +82,7 @@ impl Array {
                 request.progress.advance(frame_bytes);
                 voxels
             }
-            None => self.into_memory(payload, total, certain, request)?,
+            None => self.copy(payload, total, certain, request)?,
         };
         request.progress.end();
         Ok(voxels)
@@ -105,7 +105,7 @@ impl Array {
         })
     }
 
-    fn into_memory(
+    fn copy(
         &mut self,
         payload: Payload,
         total: u64,

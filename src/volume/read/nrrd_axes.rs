@@ -202,7 +202,9 @@ fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
                 .split(',')
                 .map(|component| component.trim().parse().map_err(|_| wrong()))
                 .collect::<Result<Vec<f64>>>()?;
-            found.push(Some(vector));
+            // Some writers say `none` in numbers.
+            let is_none = vector.iter().all(|component| component.is_nan());
+            found.push((!is_none).then_some(vector));
             rest = after.trim_start();
         } else {
             let rest_after_none = rest.strip_prefix("none").ok_or_else(wrong)?;
@@ -246,8 +248,13 @@ mod tests {
     #[test]
     fn vectors_parse_with_blanks_and_none() {
         assert_eq!(
-            vectors("none (1, 0,-2.5) (0,1e1,0)").unwrap(),
-            [None, Some(vec![1.0, 0.0, -2.5]), Some(vec![0.0, 10.0, 0.0])]
+            vectors("none (nan,nan,nan) (1, 0,-2.5) (0,1e1,0)").unwrap(),
+            [
+                None,
+                None,
+                Some(vec![1.0, 0.0, -2.5]),
+                Some(vec![0.0, 10.0, 0.0])
+            ]
         );
         for bad in ["(1,0", "1 0 0", "(a,b,c)", "()"] {
             assert!(vectors(bad).is_err(), "{bad}");

@@ -326,6 +326,7 @@ fn frames_are_picked_wherever_their_axis_stands() {
         ("sitk_two.nrrd", 2, Expected::placed(DMat3::IDENTITY)),
         ("sitk_two.mha", 2, Expected::placed(DMat3::IDENTITY)),
         ("pynrrd_list_first.nrrd", 3, Expected::placed(oblique())),
+        ("pynrrd_time_first.nrrd", 3, Expected::placed(oblique())),
         ("pynrrd_time_third.nrrd", 3, Expected::nowhere()),
         ("pynrrd_series.nrrd", 3, Expected::nowhere()),
         ("nib_series.nii.gz", 3, Expected::placed(oblique())),

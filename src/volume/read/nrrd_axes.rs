@@ -33,6 +33,11 @@ fn is_domain(kind: &str) -> bool {
     matches!(kind, "domain" | "space" | "???" | "none" | "unknown")
 }
 
+/// With four components the last is time, and a direction in it alone leads nowhere in space.
+fn is_spatial(direction: &[f64]) -> bool {
+    direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
+}
+
 impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
@@ -66,7 +71,7 @@ impl Axes {
 
         let mut space_axes: Vec<usize> = (0..dimension)
             .filter(|&axis| match (&directions, &kinds) {
-                (Some(directions), _) => directions[axis].is_some(),
+                (Some(directions), _) => directions[axis].as_deref().is_some_and(is_spatial),
                 (None, Some(kinds)) => is_domain(&kinds[axis]),
                 (None, None) => true,
             })

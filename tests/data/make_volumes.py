@@ -137,6 +137,11 @@ nrrd.write("pynrrd_list_first.nrrd", np.asfortranarray(txyz),
             "space directions": np.vstack([[np.nan] * 3, FILE_AXES])})
 nrrd.write("pynrrd_time_third.nrrd", np.asfortranarray(np.moveaxis(txyz, 0, 2)),
            {"encoding": "gzip", "kinds": ["domain", "domain", "time", "domain"]})
+# time as the first axis, of a space with time: its direction has only a fourth component
+nrrd.write("pynrrd_time_first.nrrd", np.asfortranarray(txyz),
+           {"encoding": "raw", "space": "left-posterior-superior-time",
+            "space origin": np.array([*ORIGIN, 0.0]),
+            "space directions": np.vstack([[0, 0, 0, 0.1], np.hstack([FILE_AXES, np.zeros((3, 1))])])})
 nrrd.write("pynrrd_series.nrrd", np.asfortranarray(np.moveaxis(txyz, 0, 3)), {"encoding": "bzip2"})
 
 # --- NRRD in its own words: skips, lists, patterns -----------------------------------------------

@@ -35,8 +35,7 @@ impl Array {
     /// # Errors
     /// The payload is shorter than announced or damaged; see [`Volume::new`].
     pub(super) fn read(mut self, payload: Payload, request: &Request) -> Result<Volume> {
-        let total = self.total_bytes()?;
-        let voxels = self.voxels(payload, total, request)?;
+        let voxels = self.voxels(payload, request)?;
         self.into_volume(voxels, request.options)
     }
 
@@ -53,12 +52,8 @@ impl Array {
     }
 
     /// As [`Array::read`], the voxels alone.
-    pub(super) fn voxels(
-        &mut self,
-        payload: Payload,
-        total: u64,
-        request: &Request,
-    ) -> Result<Voxels> {
+    pub(super) fn voxels(&mut self, payload: Payload, request: &Request) -> Result<Voxels> {
+        let total = self.total_bytes()?;
         let frame_bytes = self.dims.voxels() * self.element.scalar.bytes();
         let certain = matches!(payload, Payload::Mapped(_));
         if let Payload::Mapped(bytes) = &payload {
@@ -82,7 +77,7 @@ impl Array {
                 request.progress.advance(frame_bytes);
                 voxels
             }
-            None => self.into_memory(payload, total, certain, request)?,
+            None => self.copy(payload, total, certain, request)?,
         };
         request.progress.end();
         Ok(voxels)
@@ -105,7 +100,7 @@ impl Array {
         })
     }
 
-    fn into_memory(
+    fn copy(
         &mut self,
         payload: Payload,
         total: u64,

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::payload::Payload;
 use crate::error::{Error, Result};
 
-/// The most files of one volume: one a slice of the longest axis.
-const MOST_FILES: u64 = 1 << 20;
+/// The most files of one volume.
+const MOST_FILES: u64 = 1 << 16;
 
 /// Where a header says its voxels are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -149,32 +149,30 @@ impl Joined {
 
 impl Read for Joined {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        loop {
-            if self.current.as_ref().is_none_or(|part| part.left == 0) {
-                self.current = self.next_part()?;
-            }
-            let Some(part) = &mut self.current else {
-                return Ok(0);
-            };
-            if part.left == 0 || buffer.is_empty() {
-                return Ok(0);
-            }
-            let wanted = part.left.min(buffer.len() as u64) as usize;
-            let count = part
-                .reader
-                .read(&mut buffer[..wanted])
-                .map_err(|cause| io::Error::other(format!("{}: {cause}", part.path.display())))?;
-            if count == 0 {
-                return Err(io::Error::other(format!(
-                    "{}: ends {} bytes before its share of {}",
-                    part.path.display(),
-                    part.left,
-                    self.share
-                )));
-            }
-            part.left -= count as u64;
-            return Ok(count);
+        if self.current.as_ref().is_none_or(|part| part.left == 0) {
+            self.current = self.next_part()?;
         }
+        let Some(part) = &mut self.current else {
+            return Ok(0);
+        };
+        let wanted = part.left.min(buffer.len() as u64) as usize;
+        if wanted == 0 {
+            return Ok(0);
+        }
+        let count = part
+            .reader
+            .read(&mut buffer[..wanted])
+            .map_err(|cause| io::Error::other(format!("{}: {cause}", part.path.display())))?;
+        if count == 0 {
+            return Err(io::Error::other(format!(
+                "{}: ends {} bytes before its share of {}",
+                part.path.display(),
+                part.left,
+                self.share
+            )));
+        }
+        part.left -= count as u64;
+        Ok(count)
     }
 }
 

@@ -24,7 +24,7 @@ pub use raw::{RawLayout, RawSize, RawType};
 use std::path::Path;
 
 use self::source::Source;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::progress::Progress;
 use crate::volume::{NonFinite, Volume};
 
@@ -59,7 +59,29 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
     };
     Source::open(path)
         .and_then(|source| read_source(source, &request))
-        .map_err(|error| error.at(path.display()))
+        .map_err(|error| one_sentence(&error).at(path.display()))
+}
+
+/// Messages quote headers, and headers may contain anything, at any length.
+fn one_sentence(error: &Error) -> Error {
+    const LONGEST: usize = 400;
+    let message = error.to_string();
+    let mut sentence: String = message
+        .chars()
+        .take(LONGEST)
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if message.chars().nth(LONGEST).is_some() {
+        sentence.push('…');
+    }
+    let cleaned = match error.kind() {
+        ErrorKind::Usage => Error::usage(sentence),
+        _ => Error::failed(sentence),
+    };
+    match error.hint_text() {
+        Some(hint) => cleaned.hint(hint),
+        None => cleaned,
+    }
 }
 
 fn read_source(source: Source, request: &Request) -> Result<Volume> {

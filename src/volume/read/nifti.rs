@@ -370,7 +370,9 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
     let read_header = || {
         let source = Source::open(header)?;
         if !is_nifti(source.head()) {
-            return Err(Error::failed("is no NIfTI header"));
+            return Err(Error::failed(
+                "is no NIfTI header (of such pairs, Analyze 7.5 is not read)",
+            ));
         }
         let request = Request {
             path: header,

@@ -28,8 +28,28 @@ pub(super) fn is_zip(head: &[u8]) -> bool {
 /// One array of the archive.
 struct Entry {
     name: String,
-    header: Header,
-    payload: Payload,
+    bytes: MappedBytes,
+    is_deflated: bool,
+    checksum: u32,
+}
+
+impl Entry {
+    /// The array's header and what follows it.
+    fn open(&self) -> Result<(Header, Payload)> {
+        let bytes = self.bytes.clone();
+        let payload = if self.is_deflated {
+            let length = bytes.len();
+            let checked = Checked {
+                reader: DeflateDecoder::new(bytes),
+                sum: Crc::new(),
+                expected: self.checksum,
+            };
+            Payload::unzipped(checked, length)
+        } else {
+            Payload::Mapped(bytes)
+        };
+        Header::take(payload).map_err(|error| error.at(format!("array '{}'", self.name)))
+    }
 }
 
 /// Reads the archive's volume: of several arrays with three or four axes the one with the likeliest
@@ -39,37 +59,38 @@ pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
         Error::failed("this is a zip archive inside gzip").hint("unpack it with gunzip first")
     })?;
     let entries = entries(file)?;
-    let count = entries.len();
-    let shapes: Vec<String> = entries
-        .iter()
-        .map(|entry| format!("{} {:?}", entry.name, entry.header.shape))
-        .collect();
-    let rank = |entry: &Entry| {
-        LIKELY_NAMES
+    let mut shapes = Vec::new();
+    let mut chosen: Option<(usize, &Entry)> = None;
+    for entry in &entries {
+        // Decoders are large: an array's is dropped again before the next one's is made.
+        let (header, _) = entry.open()?;
+        shapes.push(format!("{} {:?}", entry.name, header.shape));
+        let rank = LIKELY_NAMES
             .iter()
             .position(|name| entry.name.eq_ignore_ascii_case(name))
-            .unwrap_or(LIKELY_NAMES.len())
+            .unwrap_or(LIKELY_NAMES.len());
+        if matches!(header.shape.len(), 3 | 4) && chosen.is_none_or(|(best, _)| rank < best) {
+            chosen = Some((rank, entry));
+        }
+    }
+    let Some((_, entry)) = chosen else {
+        return Err(Error::failed(if entries.is_empty() {
+            "this is a zip archive without NumPy arrays: DICOM and other archives are not read by this version".to_owned()
+        } else {
+            format!("no array has three or four axes: {}", shapes.join(", "))
+        }));
     };
-    // min_by_key keeps the first of equals.
-    let chosen = entries
-        .into_iter()
-        .filter(|entry| matches!(entry.header.shape.len(), 3 | 4))
-        .min_by_key(rank)
-        .ok_or_else(|| {
-            Error::failed(match count {
-                0 => "this is a zip archive without NumPy arrays: DICOM and other archives are not read by this version".to_owned(),
-                _ => format!("no array has three or four axes: {}", shapes.join(", ")),
-            })
-        })?;
     let mut notes = Vec::new();
-    if count > 1 {
+    if entries.len() > 1 {
         notes.push(format!(
-            "of the archive's {count} arrays '{}' is read",
-            chosen.name
+            "of the archive's {} arrays '{}' is read",
+            entries.len(),
+            entry.name
         ));
     }
-    numpy::read_array(&chosen.header, chosen.payload, notes, request)
-        .map_err(|error| error.at(format!("array '{}'", chosen.name)))
+    let (header, payload) = entry.open()?;
+    numpy::read_array(&header, payload, notes, request)
+        .map_err(|error| error.at(format!("array '{}'", entry.name)))
 }
 
 fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
@@ -90,25 +111,16 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
             return refused("nowhere in the archive");
         };
         let bytes = file.clone().after(start)?.first(member.compressed_size());
-        let payload = match member.compression() {
-            CompressionMethod::Stored => Payload::Mapped(bytes),
-            CompressionMethod::Deflated => {
-                let length = bytes.len();
-                let checked = Checked {
-                    reader: DeflateDecoder::new(bytes),
-                    sum: Crc::new(),
-                    expected: member.crc32(),
-                };
-                Payload::unzipped(checked, length)
-            }
+        let is_deflated = match member.compression() {
+            CompressionMethod::Stored => false,
+            CompressionMethod::Deflated => true,
             _ => return refused("compressed by a method which this version does not read"),
         };
-        let (header, payload) =
-            Header::take(payload).map_err(|error| error.at(format!("array '{name}'")))?;
         entries.push(Entry {
             name: name.to_owned(),
-            header,
-            payload,
+            bytes,
+            is_deflated,
+            checksum: member.crc32(),
         });
     }
     Ok(entries)

@@ -33,6 +33,11 @@ fn is_domain(kind: &str) -> bool {
     matches!(kind, "domain" | "space" | "???" | "none" | "unknown")
 }
 
+/// With four components the last is time, and a direction in it alone leads nowhere in space.
+fn is_spatial(direction: &[f64]) -> bool {
+    direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
+}
+
 impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
@@ -66,7 +71,7 @@ impl Axes {
 
         let mut space_axes: Vec<usize> = (0..dimension)
             .filter(|&axis| match (&directions, &kinds) {
-                (Some(directions), _) => directions[axis].is_some(),
+                (Some(directions), _) => directions[axis].as_deref().is_some_and(is_spatial),
                 (None, Some(kinds)) => is_domain(&kinds[axis]),
                 (None, None) => true,
             })
@@ -202,7 +207,9 @@ fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
                 .split(',')
                 .map(|component| component.trim().parse().map_err(|_| wrong()))
                 .collect::<Result<Vec<f64>>>()?;
-            found.push(Some(vector));
+            // Some writers say `none` in numbers.
+            let is_none = vector.iter().all(|component| component.is_nan());
+            found.push((!is_none).then_some(vector));
             rest = after.trim_start();
         } else {
             let rest_after_none = rest.strip_prefix("none").ok_or_else(wrong)?;
@@ -246,8 +253,13 @@ mod tests {
     #[test]
     fn vectors_parse_with_blanks_and_none() {
         assert_eq!(
-            vectors("none (1, 0,-2.5) (0,1e1,0)").unwrap(),
-            [None, Some(vec![1.0, 0.0, -2.5]), Some(vec![0.0, 10.0, 0.0])]
+            vectors("none (nan,nan,nan) (1, 0,-2.5) (0,1e1,0)").unwrap(),
+            [
+                None,
+                None,
+                Some(vec![1.0, 0.0, -2.5]),
+                Some(vec![0.0, 10.0, 0.0])
+            ]
         );
         for bad in ["(1,0", "1 0 0", "(a,b,c)", "()"] {
             assert!(vectors(bad).is_err(), "{bad}");

@@ -202,8 +202,7 @@ pub(super) fn read_array(
     if !header.fortran_order {
         return array.read(payload, request);
     }
-    let total = array.total_bytes()?;
-    let voxels = array.voxels(payload, total, request)?;
+    let voxels = array.voxels(payload, request)?;
     let [nz, ny, nx] = stored_dims.array().map(u64::from);
     array.dims = Dims::new([nx, ny, nz])?;
     let turned = with_voxels!(&voxels, slice => Voxels::from(x_fastest(slice, array.dims)));

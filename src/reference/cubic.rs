@@ -191,6 +191,11 @@ mod tests {
         assert_eq!(ends.len(), 3);
         assert!((ends[1] - 1e-9).abs() < 1e-20);
         assert_eq!(Cubic([7.0, 0.0, 0.0, 0.0]).monotone_ends().len(), 2);
+        // They are a ten-thousandth apart; one sign further there are none.
+        for (apart, count) in [(2.5e-9, 4), (-2.5e-9, 2)] {
+            let c = Cubic([0.0, 0.25 - apart, -0.5, 1.0 / 3.0]);
+            assert_eq!(c.monotone_ends().len(), count);
+        }
     }
 
     #[test]

@@ -113,15 +113,23 @@ fn rays_in_faces_and_edges_see_the_field_there() {
         outside + DVec3::X,
     );
     assert_eq!(seen.kind, Kind::Nothing);
-    // A corner is touched in one point: its value, no opacity.
-    let (eye, corner) = (DVec3::new(-1.0, -1.0, 2.0), DVec3::ZERO);
-    let touch = cast(
+    // An edge is touched in one point: its value, no opacity.
+    let (eye, toward) = (DVec3::new(-1.0, 1.0, 3.0), DVec3::new(0.0, 0.0, 3.0));
+    let touch = |picture| cast(&ramp, picture, eye, toward);
+    for of in [Projection::Maximum, Projection::Minimum, Projection::Mean] {
+        assert_eq!(touch(projection(of)).value, 12.0);
+    }
+    assert_eq!(touch(iso(12.0, true)).kind, Kind::Cap);
+    assert_eq!(touch(iso(12.5, true)).kind, Kind::Nothing);
+    assert_eq!(touch(fog()).color, [0.0; 4]);
+    let past = DVec3::new(-1.0, 0.999, 3.0);
+    let missed = cast(
         &ramp,
         projection(Projection::Mean),
-        eye,
-        corner + (corner - eye) * 0.0,
+        past,
+        past + toward - eye,
     );
-    assert!(is_sane(&touch));
+    assert_eq!(missed.kind, Kind::Nothing);
 }
 
 /// Volumes of awkward sizes.

@@ -108,6 +108,12 @@ fn judge_on(device: &Device, name: &str, volume: &Volume, iso: f64) {
         termination: 0.999,
     };
     let (truth, frame) = judge.frames(&scene);
+    for st in [0.25, 0.125, 0.0625, 0.03125] {
+        scene.sampling.step_voxels = st;
+        let f = judge.device(&scene);
+        let e = color_error(&truth, &f).unwrap();
+        println!("DVR {name} {st} {:.3}", e.max * 255.0);
+    }
     let dvr = color_error(&truth, &frame).unwrap();
     scene.sampling.step_voxels = 8.0;
     let coarse = color_error(&truth, &judge.device(&scene)).unwrap();

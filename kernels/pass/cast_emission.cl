@@ -1,10 +1,11 @@
 // Emission and absorption along each ray, front to back (Levoy 1988; Max 1995).
 //
-// C = sum of c * T * (1 - exp(-absorption * w)), where w is each sample's share of the path: half
-// the way to either neighbour on the sample lattice, so that the shares tile the ray and the rule is
-// of second order. Opacity follows path length in mm alone. Nodes whose whole range is transparent
-// are skipped. A ray ends once its transmission falls below least_transmission: the colour lost is
-// at most least_transmission times the brightest colour.
+// C = sum of c * T * (1 - exp(-absorption * w)), where w is each sample's share of the path in mm.
+// Samples sit at both ends and in the middle of each step, with the weights of Simpson's rule; what
+// is left before the exit, less than a step, has those of the trapezoid rule. All shares are
+// positive and tile the ray, so that opacity depends on path length alone and never leaves 0..1.
+// Nodes whose whole range is transparent are skipped. A ray ends once its transmission falls below
+// least_transmission: the colour lost is at most least_transmission times the brightest colour.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w) and, per octree node, its CLASS_*. Writes color, premultiplied linear light;
@@ -12,6 +13,18 @@
 #include "lib/octree.clh"
 #include "lib/shade.clh"
 #include "lib/transfer.clh"
+
+// The share of the path of sample k of a lattice of half steps, in mm. Simpson's rule holds on the
+// first `simpson` half steps, an even number.
+static inline float path_share_mm(Lattice lattice, uint simpson, uint k)
+{
+    float half_mm = lattice.step_mm;
+    if ((k & 1u) == 1u && k < simpson)
+        return half_mm * (4.0f / 3.0f);
+    float before = k <= simpson ? half_mm * (1.0f / 3.0f) : 0.5f * (lattice_t(lattice, k) - lattice_t(lattice, k - 1u));
+    float after = k < simpson ? half_mm * (1.0f / 3.0f) : 0.5f * (lattice_t(lattice, k + 1u) - lattice_t(lattice, k));
+    return (k == 0u ? 0.0f : before) + (k == lattice.last ? 0.0f : after);
+}
 
 kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                           const global float *knot_values, const global float4 *knot_colors,
@@ -37,14 +50,18 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
     uint node_count = 0u;
 
     if (interval.enter <= interval.exit) {
-        Lattice lattice = ray_lattice(volume, ray, interval, cast.step_mm);
+        Lattice lattice = ray_lattice(volume, ray, interval, 0.5f * cast.step_mm);
+        uint simpson = lattice.last < 2u ? 0u : (lattice.last - 1u) & ~1u;
         Walk walk = walk_start(volume, cast.traverse);
         uint3 cell = cell_at(volume, lattice.start);
+        uint3 span_cell = cell; // of the last sample of the span before
         uint k = 0u;
         while (k <= lattice.last && transmission >= cast.least_transmission) {
             bool skip = false;
             uint end = lattice.last + 1u;
             if (cast.traverse != TRAVERSE_OFF) {
+                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+                walk_on(&walk, span_cell, cell);
                 for (;;) {
                     skip = node_class[node_index(levels, cell, walk.level)] != CLASS_VISIT;
                     node_count++;
@@ -52,7 +69,7 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                         break;
                     walk.level--;
                 }
-                end = span_end(volume, lattice, k, cell, walk.level);
+                end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
             }
             for (; k < end && !skip && transmission >= cast.least_transmission; k++) {
                 float t = lattice_t(lattice, k);
@@ -60,9 +77,7 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                 float4 seen = transfer_at(knot_values, knot_colors, cast.knots, field_at(voxels, volume, p));
                 sample_count++;
                 if (seen.w > 0.0f) {
-                    float before = lattice_t(lattice, k == 0u ? 0u : k - 1u);
-                    float after = lattice_t(lattice, k == lattice.last ? k : k + 1u);
-                    float depth_here = absorption_per_mm(cast, seen.w) * (0.5f * (after - before));
+                    float depth_here = absorption_per_mm(cast, seen.w) * path_share_mm(lattice, simpson, k);
                     float3 rgb = seen.xyz;
 #if SHADED
                     float3 toward_eye = -ray.dir_world;
@@ -74,11 +89,6 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                 }
             }
             k = end;
-            if (k <= lattice.last) {
-                uint3 before = cell;
-                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
-                walk_on(&walk, before, cell);
-            }
         }
     }
 

@@ -1,7 +1,8 @@
 // One value per ray: its maximum or minimum, its mean, or its first local maximum.
 //
 // PROJECTION_EXTREMUM: the largest of sign * Phi over the samples, and where it is first reached;
-// a node is skipped when its range cannot beat the running extremum (Mroz et al. 2000).
+// a node is skipped when its range cannot beat the running extremum (Mroz et al. 2000). With `probe`
+// the peaks between samples count too.
 // PROJECTION_MEAN: the composite trapezoid rule, every sample needed.
 // PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
 // either end counts when the value falls away from it.
@@ -10,6 +11,7 @@
 // meets the volume) and value (physical); with LAYERS depth (mm from the eye; +inf for the mean);
 // with COUNTERS the samples taken and the nodes tested.
 #include "lib/octree.clh"
+#include "lib/peak.clh"
 
 #if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
 #error "PROJECTION, which value is wanted, is given by the host"
@@ -64,48 +66,63 @@ kernel void cast_projection(const global VOXEL *voxels, const global float2 *nod
         bool done = false;
         Walk walk = walk_start(volume, cast.traverse);
         uint3 cell = cell_at(volume, lattice.start);
+        uint3 span_cell = cell; // of the span's last sample
+        uint3 last_cell = cell; // of the sample before the span
+        bool skip = false;
+        bool skip_before = false;
+        RayPoint here = {0.0f, 0.0f, 0.0f}; // sample k, heights are sign * Phi
+        RayPoint before = here;             // sample k - 1
+        bool have_here = false;             // whether `here` is sample k - 1 as k's turn comes
+        uint end = 0u;                      // of the span
         uint k = 0u;
         while (k <= lattice.last && !done) {
-            bool skip = false;
-            uint end = lattice.last + 1u;
-            if (cast.traverse != TRAVERSE_OFF) {
-                for (;;) {
-                    float2 range = node_range[node_index(levels, cell, walk.level)];
-                    float bound = cast.sign > 0.0f ? range.y : -range.x;
-                    node_count++;
+            if (k == end) {
+                skip_before = skip;
+                end = lattice.last + 1u;
+                if (cast.traverse != TRAVERSE_OFF) {
+                    cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+                    last_cell = span_cell;
+                    walk_on(&walk, last_cell, cell);
+                    for (;;) {
+                        float2 range = node_range[node_index(levels, cell, walk.level)];
+                        float bound = cast.sign > 0.0f ? range.y : -range.x;
+                        node_count++;
 #if PROJECTION == PROJECTION_LOCAL
-                    // A climb that has reached the threshold ends where all that follows is lower.
-                    skip = most >= cast.threshold ? bound < most : bound <= most;
+                        // A climb that has reached the threshold ends where all that follows is lower.
+                        skip = most >= cast.threshold ? bound < most : bound <= most;
 #else
-                    skip = bound <= most;
+                        skip = bound <= most;
 #endif
-                    if (skip || walk.level == 0u)
-                        break;
-                    walk.level--;
+                        if (skip || walk.level == 0u)
+                            break;
+                        walk.level--;
+                    }
+                    end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
                 }
-                end = span_end(volume, lattice, k, cell, walk.level);
             }
-#if PROJECTION == PROJECTION_LOCAL
-            done = skip && most >= cast.threshold;
-#endif
-            for (; k < end && !skip && !done; k++) {
-                float t = lattice_t(lattice, k);
-                float v = cast.sign * field_at(voxels, volume, lattice_point(volume, lattice, t));
+            // A skipped span's first segment matters unless it lies in skipped nodes wholly.
+            bool matters = !skip || !(skip_before && leaves_touch(last_cell, cell));
+            for (uint m = have_here || k == 0u ? k : k - 1u; m <= k && matters; m++) {
+                before = here;
+                here = ray_point(voxels, volume, lattice, cast.sign, 0.0f, lattice_t(lattice, m));
                 sample_count++;
+            }
+            RayPoint peak;
+            if (matters && k > 0u && cast.probe
+                && peak_between(voxels, volume, lattice, cast.sign, 0.0f, most, false, before, here, &peak, &sample_count)) {
+                most = peak.height;
+                found_mm = peak.t;
+            }
 #if PROJECTION == PROJECTION_LOCAL
-                done = most >= cast.threshold && v < most;
+            done = matters && most >= cast.threshold && here.height < most;
 #endif
-                if (v > most && !done) {
-                    most = v;
-                    found_mm = t;
-                }
+            if (matters && here.height > most) {
+                most = here.height;
+                found_mm = here.t;
             }
-            k = end;
-            if (k <= lattice.last) {
-                uint3 before = cell;
-                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
-                walk_on(&walk, before, cell);
-            }
+            uint next = skip ? end : k + 1u;
+            have_here = matters && next == k + 1u;
+            k = next;
         }
         found = cast.sign * most;
 #endif

@@ -2,14 +2,16 @@
 //
 // Fixed steps on the sample lattice (Levoy 1988), spans of nodes that lie wholly on one side of
 // the iso value skipped (Lesar et al. 2015, §III-C), the crossing refined between two samples.
-// "Inside" is Phi >= iso. With caps, a ray that enters through a face of the volume where it is
-// inside hits there.
+// With `probe`, two samples on one side between which the field may turn are looked between for a
+// peak on the other side. "Inside" is Phi >= iso. With caps, a ray that enters through a face of
+// the volume where it is inside hits there.
 //
 // Reads the voxels and, per octree node, its CLASS_*. Writes per pixel hit_mm (from the base plane
 // along the ray; +inf: none) and kind; with LAYERS depth (mm from the eye) and the physical value
 // at the hit; with COUNTERS the samples taken and the nodes tested.
-#include "lib/refine.clh"
 #include "lib/octree.clh"
+#include "lib/peak.clh"
+#include "lib/refine.clh"
 
 kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                          VolumeGrid volume, RayGrid rays, SurfaceCast cast,
@@ -40,55 +42,78 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
         Lattice lattice = ray_lattice(volume, ray, interval, cast.step_mm);
         Walk walk = walk_start(volume, cast.traverse);
         uint3 cell = cell_at(volume, lattice.start);
+        uint3 span_cell = cell; // of the span's last sample
+        uint3 last_cell = cell; // of the sample before the span
+        uint class = CLASS_VISIT;
+        uint class_before = CLASS_VISIT;
         bool inside_before = false;
+        RayPoint here = {0.0f, 0.0f, 0.0f}; // sample k, heights above the iso value
+        RayPoint before = here;             // sample k - 1
+        bool have_here = false;             // whether `here` is sample k - 1 as k's turn comes
+        uint end = 0u;          // of the span
         uint k = 0u;
         while (k <= lattice.last && met == KIND_NOTHING) {
-            uint class = CLASS_VISIT;
-            uint end = lattice.last + 1u;
-            if (cast.traverse != TRAVERSE_OFF) {
-                for (;;) {
-                    class = node_class[node_index(levels, cell, walk.level)];
-                    node_count++;
-                    if (class != CLASS_VISIT || walk.level == 0u)
-                        break;
-                    walk.level--;
-                }
-                end = span_end(volume, lattice, k, cell, walk.level);
-            }
-            // Of a span on one side, the first sample tells all.
-            uint sampled_end = class == CLASS_VISIT ? end : k + 1u;
-            for (; k < sampled_end; k++) {
-                bool inside = class == CLASS_ABOVE;
-                if (class == CLASS_VISIT) {
-                    inside = iso_distance(voxels, volume, lattice, cast.iso, lattice_t(lattice, k)) >= 0.0f;
-                    sample_count++;
-                }
-                if (k == 0u) {
-                    inside_before = inside;
-                    if (inside && cast.caps && interval.by_face) {
-                        met = KIND_CAP;
-                        hit = 0.0f;
-                        break;
+            if (k == end) {
+                class_before = class;
+                end = lattice.last + 1u;
+                if (cast.traverse != TRAVERSE_OFF) {
+                    cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+                    last_cell = span_cell;
+                    walk_on(&walk, last_cell, cell);
+                    for (;;) {
+                        class = node_class[node_index(levels, cell, walk.level)];
+                        node_count++;
+                        if (class != CLASS_VISIT || walk.level == 0u)
+                            break;
+                        walk.level--;
                     }
-                } else if (inside != inside_before) {
-                    Bracket bracket;
-                    bracket.near = lattice_t(lattice, k - 1u);
-                    bracket.far = lattice_t(lattice, k);
+                    end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
+                }
+            }
+            // A skipped span's first segment matters unless it lies in skipped nodes wholly.
+            bool visit = class == CLASS_VISIT;
+            bool matters = visit || (k > 0u && !(class == class_before && leaves_touch(last_cell, cell)));
+            for (uint m = have_here || k == 0u ? k : k - 1u; m <= k && matters; m++) {
+                before = here;
+                here = ray_point(voxels, volume, lattice, 1.0f, cast.iso, lattice_t(lattice, m));
+                sample_count++;
+            }
+            bool inside = visit ? here.height >= 0.0f : class == CLASS_ABOVE;
+            if (k == 0u) {
+                if (inside && cast.caps && interval.by_face) {
+                    met = KIND_CAP;
+                    hit = 0.0f;
+                }
+            } else if (matters) {
+                bool crosses = inside != inside_before;
+                Bracket bracket;
+                bracket.near = before.t;
+                bracket.far = here.t;
+                if (!crosses && cast.probe) {
+                    float sign = inside ? -1.0f : 1.0f;
+                    RayPoint a = before;
+                    RayPoint b = here;
+                    RayPoint peak;
+                    a.height *= sign;
+                    a.slope *= sign;
+                    b.height *= sign;
+                    b.slope *= sign;
+                    crosses = peak_between(voxels, volume, lattice, sign, cast.iso, 0.0f, true, a, b, &peak, &sample_count);
+                    bracket.far = crosses ? peak.t : here.t;
+                }
+                if (crosses) {
                     bracket.f_near = 0.0f;
                     bracket.f_far = 0.0f;
                     bracket.samples = 0u;
                     hit = refine(voxels, volume, lattice, cast.iso, cast.refine, cast.iterations, &bracket);
                     met = KIND_SURFACE;
                     sample_count += bracket.samples;
-                    break;
                 }
             }
-            k = end;
-            if (k <= lattice.last) {
-                uint3 before = cell;
-                cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
-                walk_on(&walk, before, cell);
-            }
+            inside_before = inside;
+            uint next = visit ? k + 1u : end;
+            have_here = matters && next == k + 1u;
+            k = next;
         }
 #if LAYERS
         if (met != KIND_NOTHING)

@@ -50,6 +50,7 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(SurfaceCast, refine);
         layout[n++] = OFFSET(SurfaceCast, iterations);
         layout[n++] = OFFSET(SurfaceCast, traverse);
+        layout[n++] = OFFSET(SurfaceCast, probe);
         layout[n++] = OFFSET(SurfaceCast, pad);
     }
     {
@@ -59,6 +60,10 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(ProjectionCast, sign);
         layout[n++] = OFFSET(ProjectionCast, threshold);
         layout[n++] = OFFSET(ProjectionCast, traverse);
+        layout[n++] = OFFSET(ProjectionCast, probe);
+        layout[n++] = OFFSET(ProjectionCast, pad_0);
+        layout[n++] = OFFSET(ProjectionCast, pad_1);
+        layout[n++] = OFFSET(ProjectionCast, pad_2);
     }
     {
         EmissionCast value;

@@ -21,6 +21,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/field.clh",
     "lib/lattice.clh",
     "lib/octree.clh",
+    "lib/peak.clh",
     "lib/ray.clh",
     "lib/refine.clh",
     "lib/shade.clh",

@@ -73,7 +73,8 @@ twin! {
         refine: u32,
         iterations: u32,
         traverse: u32,
-        pad: [f32; 2],
+        probe: u32,
+        pad: u32,
     }
 }
 
@@ -85,6 +86,10 @@ twin! {
         /// In stored units.
         threshold: f32,
         traverse: u32,
+        probe: u32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
     }
 }
 

@@ -61,7 +61,8 @@ pub fn surface(
         refine: refine_number(refine),
         iterations: refine.iterations,
         traverse: view.traverse(),
-        pad: [0.0; 2],
+        probe: u32::from(view.scene.sampling.probe),
+        pad: 0,
     };
     let mut hit_mm = run.plane("hit plane")?;
     let mut kind = run.plane("kind plane")?;
@@ -127,6 +128,10 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         sign,
         threshold,
         traverse: view.traverse(),
+        probe: u32::from(view.scene.sampling.probe),
+        pad_0: 0,
+        pad_1: 0,
+        pad_2: 0,
     };
     let mut kind = run.plane("kind plane")?;
     let mut value = run.plane("value plane")?;

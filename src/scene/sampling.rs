@@ -120,6 +120,9 @@ pub struct Sampling {
     pub traverse: Traverse,
     /// Whether nodes that cannot contribute are skipped; never changes the picture.
     pub skip: bool,
+    /// Whether surfaces and extrema are also looked for between two samples where the field's
+    /// slopes along the ray point at a peak; without it a fixed step is all there is.
+    pub probe: bool,
 }
 
 impl Sampling {
@@ -134,6 +137,7 @@ impl Default for Sampling {
             filter: Filter::Linear,
             traverse: Traverse::Hierarchical,
             skip: true,
+            probe: true,
         }
     }
 }

@@ -26,7 +26,7 @@ impl SceneOptions {
             .map_err(|cause| Error::io(path, "read the scene", &cause))?;
         let mut options = Self::parse(&text, &path.display().to_string())?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        options.volume.volume = options.volume.volume.map(|file| file.from_folder(folder));
+        options.volume.volume = options.volume.volume.map(|file| file.seen_from(folder));
         if let Some(TransferChoice::Named(name)) = &mut options.picture.tf
             && !TransferFile::presets().any(|preset| preset == name)
         {

@@ -33,7 +33,7 @@ pub use volume::{FilePath, RawSizeText, VolumeOptions};
 pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
-use crate::extent::ImageSize;
+use crate::extent::{ImageSize, Range};
 use crate::scene::{Scene, TransferFile};
 
 /// Everything that determines a picture, as far as it was said.
@@ -122,7 +122,7 @@ impl SceneOptions {
             light: options.picture.light(),
             tone: options.tone.tone(),
         };
-        let notes = self.notes(&options);
+        let notes = self.notes(&options, subject);
         Ok(Resolved {
             scene,
             options,
@@ -130,7 +130,7 @@ impl SceneOptions {
         })
     }
 
-    fn notes(&self, filled: &Self) -> Vec<String> {
+    fn notes(&self, filled: &Self, subject: &Subject) -> Vec<String> {
         let mut notes = Vec::new();
         let given = &self.picture;
         let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {
@@ -149,6 +149,14 @@ impl SceneOptions {
             given.lmip_threshold,
             filled.picture.lmip_threshold,
         );
+        if let Some(Threshold::Value(iso)) = filled.picture.iso
+            && !subject.range.contains(iso)
+        {
+            let Range { min, max } = subject.range;
+            notes.push(format!(
+                "iso = {iso} lies outside the volume's values, {min} to {max}: there is no surface"
+            ));
+        }
         if let (Some(ends), Some(filled)) = (given.window, filled.picture.window)
             && ends != filled
         {

@@ -16,7 +16,7 @@ pub struct FilePath(pub PathBuf);
 
 impl FilePath {
     /// The same file, as seen from where `base` is seen.
-    pub(super) fn from_folder(&self, base: &Path) -> Self {
+    pub(super) fn seen_from(&self, base: &Path) -> Self {
         Self(base.join(&self.0))
     }
 }
@@ -66,7 +66,7 @@ group! {
     #[command(next_help_heading = "Volume")]
     pub struct VolumeOptions {
         /// The volume: NRRD, MetaImage, NIfTI, NumPy or headerless raw, recognised by its content
-        #[arg(value_name = "VOLUME")]
+        #[arg(value_name = "VOLUME", help_heading = None::<&str>)]
         volume: FilePath,
 
         /// Which volume of a 4-D file, counted from 0 [default: 0]

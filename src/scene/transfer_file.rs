@@ -157,6 +157,7 @@ fn ascending<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<Vec<[f64
     from.deserialize_seq(Points)
 }
 
+/// A point, after the one given: refused while it is read, so that its line is known.
 struct PointAfter(Option<[f64; 5]>);
 
 impl<'de> DeserializeSeed<'de> for PointAfter {
@@ -166,7 +167,25 @@ impl<'de> DeserializeSeed<'de> for PointAfter {
         self,
         from: D,
     ) -> std::result::Result<Self::Value, D::Error> {
-        let numbers = Vec::<f64>::deserialize(from)?;
+        from.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for PointAfter {
+    type Value = [f64; 5];
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a point [value, r, g, b, opacity]")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(
+        self,
+        mut items: A,
+    ) -> std::result::Result<Self::Value, A::Error> {
+        let mut numbers = Vec::new();
+        while let Some(number) = items.next_element::<f64>()? {
+            numbers.push(number);
+        }
         let Ok(point) = <[f64; 5]>::try_from(numbers) else {
             return Err(de::Error::custom(
                 "a point is five numbers: [value, r, g, b, opacity]",

@@ -9,6 +9,8 @@ use std::str::FromStr;
 use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserializer, Serializer};
 
+use crate::extent::ImageSize;
+
 /// Reads a string, a number, on/off as a boolean, or a list (joined by commas) as the flag's text.
 pub(super) fn deserialize<'de, T, D>(from: D) -> Result<T, D::Error>
 where
@@ -126,8 +128,21 @@ macro_rules! plain {
 }
 pub(super) use plain;
 
+/// A picture's size as a list is `[width, height]`.
+impl<'de> serde::Deserialize<'de> for ImageSize {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let text = from.deserialize_any(Text)?;
+        text.replace(',', "x").parse().map_err(de::Error::custom)
+    }
+}
+
+impl serde::Serialize for ImageSize {
+    fn serialize<S: Serializer>(&self, into: S) -> Result<S::Ok, S::Error> {
+        serialize(self, into)
+    }
+}
+
 plain!(
-    crate::extent::ImageSize,
     crate::scene::Refine,
     crate::scene::Filter,
     crate::scene::Traverse,

@@ -54,7 +54,7 @@ impl Source {
         let raw = RawLayout {
             size: size.transpose().map_err(|e| e.at("raw-size"))?,
             element: element.transpose().map_err(|e| e.at("raw-type"))?,
-            spacing_mm: options.raw_spacing.map(|SpacingMm(spacing)| spacing),
+            spacing_mm: options.raw_spacing.map(|SpacingMm(each)| each.into()),
             offset_bytes: options.raw_offset,
         };
         let non_finite = match options.non_finite.unwrap_or_default() {

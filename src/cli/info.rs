@@ -162,7 +162,7 @@ impl Info {
         row(
             "octree",
             format!(
-                "{} levels over leaves of {} voxels, {} bytes: {:.2} % of the volume",
+                "{} levels, leaves of {} voxels, {} bytes: {:.2} % of the volume",
                 tree.levels,
                 tree.leaf,
                 tree.bytes,

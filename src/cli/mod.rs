@@ -1,7 +1,124 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
+mod devices;
+mod info;
+mod load;
+mod outputs;
+mod phantom;
+mod progress;
+mod render;
+mod stats;
+mod terminal;
+
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use crate::error::{Error, Result};
+
+/// Pictures from angiograms and other sparse scalar volumes, without a window
+#[derive(Parser)]
+#[command(
+    name = "angioray",
+    version,
+    arg_required_else_help = true,
+    max_term_width = 100
+)]
+#[command(after_help = "Example:
+  angioray phantom vessels -o vessels.nrrd
+  angioray render vessels.nrrd -o vessels.png")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(Box<render::RenderArguments>),
+    Info(info::InfoArguments),
+    Phantom(phantom::PhantomArguments),
+    Devices(devices::DevicesArguments),
+}
+
+impl Command {
+    fn run(self) -> Result<()> {
+        match self {
+            Self::Render(arguments) => arguments.run(),
+            Self::Info(arguments) => arguments.run(),
+            Self::Phantom(arguments) => arguments.run(),
+            Self::Devices(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// The whole program: its arguments, its work, its exit code.
 pub fn main() -> ExitCode {
-    ExitCode::SUCCESS
+    let outcome = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command.run(),
+        Err(stop) => match stop.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                terminal::to_stdout(|out| write!(out, "{}", stop.render()))
+            }
+            ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                terminal::message(stop.render());
+                return ExitCode::from(2);
+            }
+            _ => Err(misused(&stop)),
+        },
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            terminal::error(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// The parser's complaint as one line and a hint.
+fn misused(stop: &clap::Error) -> Error {
+    let text = stop.render().to_string();
+    let mut message = Vec::new();
+    let mut hints = Vec::new();
+    let before_usage = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    for line in before_usage.map(str::trim) {
+        match line.strip_prefix("tip: ") {
+            Some(tip) => hints.push(tip),
+            None if line.starts_with("For more information") => {}
+            None if !line.is_empty() => message.push(line),
+            None => {}
+        }
+    }
+    let message = message.join(" ");
+    let error = Error::usage(message.strip_prefix("error: ").unwrap_or(&message));
+    if hints.is_empty() {
+        error.hint("--help lists what there is")
+    } else {
+        error.hint(hints.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_arguments_are_consistent_and_every_command_has_an_example() {
+        let mut program = Arguments::command();
+        program.clone().debug_assert();
+        program.build();
+        for command in program.get_subcommands().filter(|c| c.get_name() != "help") {
+            let example = command.get_after_help().map(ToString::to_string);
+            let wanted = format!("  angioray {} ", command.get_name());
+            let wanted = wanted.trim_end();
+            assert!(
+                example.is_some_and(|text| text.contains(wanted)),
+                "{}",
+                command.get_name()
+            );
+        }
+    }
 }

@@ -152,7 +152,11 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     loader::open().map_err(|reason| {
         Error::no_device(format!("no OpenCL library is installed ({reason})")).hint(INSTALL)
     })?;
-    let platforms = core::get_platform_ids().unwrap_or_default();
+    let platforms = if any_platform() {
+        core::get_platform_ids().unwrap_or_default()
+    } else {
+        Vec::new()
+    };
     let mut found = Vec::new();
     for platform in platforms {
         let devices =
@@ -167,6 +171,14 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
         return Err(Error::no_device("no OpenCL device was found").hint(INSTALL));
     }
     Ok(found)
+}
+
+/// Whether any driver is installed: asked first, because `ocl` waits ten seconds for one to appear.
+fn any_platform() -> bool {
+    let mut count = 0;
+    // SAFETY: no list of length 0 is how OpenCL is asked for the count alone.
+    unsafe { ocl::ffi::clGetPlatformIDs(0, std::ptr::null_mut(), &raw mut count) };
+    count > 0
 }
 
 fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceInfo> {

@@ -6,16 +6,23 @@
 mod camera;
 mod color;
 mod light;
+mod options;
 mod picture;
 mod sampling;
+mod toml_error;
 mod transfer;
+mod transfer_file;
+mod view;
 
 pub use camera::{Camera, Lens, Ray};
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
 pub use light::{Light, Phong, Reflection};
+pub use options::*;
 pub use picture::{Picture, Projection, Window};
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
 pub use transfer::{Knot, TransferFunction};
+pub use transfer_file::{TransferFile, TransferUnits};
+pub use view::{Orientation, fit_distance_mm};
 
 use crate::extent::ImageSize;
 

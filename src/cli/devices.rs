@@ -1,0 +1,45 @@
+//! `angioray devices`.
+
+use crate::error::Result;
+use crate::gpu::Device;
+
+use super::terminal::to_stdout;
+
+/// List the OpenCL devices
+///
+/// What --device takes: the number in front, 'cpu', 'gpu', or part of a name. The double-precision
+/// renderer, --device reference, is always there.
+#[derive(clap::Args)]
+#[command(after_help = "Example:
+  angioray devices
+  angioray render head.nrrd -o head.png --device 0")]
+pub struct DevicesArguments {}
+
+impl DevicesArguments {
+    pub fn run(self) -> Result<()> {
+        let devices = Device::list()?;
+        to_stdout(|out| {
+            for device in &devices {
+                writeln!(out, "{}  {}", device.id, device.name)?;
+                writeln!(
+                    out,
+                    "   {}, {} compute units, {:.1} GiB of memory, {:.1} GiB at most in one piece",
+                    device.kind,
+                    device.compute_units,
+                    gib(device.memory_bytes),
+                    gib(device.max_allocation_bytes)
+                )?;
+                writeln!(
+                    out,
+                    "   {}, {}, driver {}",
+                    device.platform, device.version, device.driver
+                )?;
+            }
+            Ok(())
+        })
+    }
+}
+
+fn gib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 30)
+}

@@ -1,0 +1,182 @@
+//! `angioray info`.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::octree::Octree;
+use crate::scene::{SceneOptions, VolumeOptions};
+
+use super::load::{self, Loaded, Source};
+use super::progress::Bars;
+use super::stats::VolumeStats;
+use super::terminal::to_stdout;
+
+/// Columns of the printed histogram.
+const WIDTH: usize = 60;
+
+/// Print what a volume is: geometry, values, a suggested iso value, the size of its octree
+#[derive(clap::Args)]
+#[command(after_help = "Example:
+  angioray info head.nrrd
+  angioray info head_256x256x256_u8.raw --raw-size 256x256x256 --raw-type u8 --json")]
+pub struct InfoArguments {
+    #[command(flatten)]
+    volume: VolumeOptions,
+
+    /// Take the volume and how it is read from a scene file; flags win over it
+    #[arg(long, value_name = "FILE.toml", help_heading = "Volume")]
+    scene: Option<PathBuf>,
+
+    /// Print JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+impl InfoArguments {
+    pub fn run(self) -> Result<()> {
+        let flags = SceneOptions {
+            volume: self.volume,
+            ..SceneOptions::default()
+        };
+        let options = load::options(flags, self.scene.as_deref())?;
+        let source = Source::of(&options.volume)?;
+        let bars = Bars::new();
+        let loaded = source.load(&bars)?;
+        let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
+        let info = Info::of(&source, &loaded, &octree);
+        if self.json {
+            return to_stdout(|out| {
+                serde_json::to_writer_pretty(&mut *out, &info)?;
+                writeln!(out)
+            });
+        }
+        let histogram = loaded.histogram.text(WIDTH);
+        to_stdout(|out| info.print(out, histogram.trim_end()))
+    }
+}
+
+#[derive(Serialize)]
+struct Info {
+    #[serde(flatten)]
+    volume: VolumeStats,
+    /// Extent of the voxel centres' box along the index axes, mm.
+    size_mm: [f64; 3],
+    center_mm: [f64; 3],
+    bytes: u64,
+    otsu: f64,
+    suggested_iso: f64,
+    /// Values below which 1, 50, 99 and 99.9 percent of the voxels lie.
+    percentiles: Percentiles,
+    octree: OctreeInfo,
+}
+
+#[derive(Serialize)]
+struct Percentiles {
+    p1: f64,
+    p50: f64,
+    p99: f64,
+    #[serde(rename = "p99.9")]
+    p99_9: f64,
+}
+
+#[derive(Serialize)]
+struct OctreeInfo {
+    leaf: u32,
+    levels: usize,
+    bytes: u64,
+    share_of_volume: f64,
+}
+
+impl Info {
+    fn of(source: &Source, loaded: &Loaded, octree: &Octree) -> Self {
+        let volume = &loaded.volume;
+        let bytes = volume.voxels().bytes().len() as u64;
+        let spacing = volume.geometry().spacing_mm().to_array();
+        let domain = volume.dims().domain();
+        let mut size_mm = [0.0; 3];
+        for (axis, size) in size_mm.iter_mut().enumerate() {
+            *size = (domain[axis].1 - domain[axis].0) * spacing[axis];
+        }
+        let percentile = |p| loaded.histogram.percentile(p);
+        Self {
+            volume: VolumeStats::of(&source.path, volume, loaded.non_finite),
+            size_mm,
+            center_mm: loaded.subject.center_world.to_array(),
+            bytes,
+            otsu: loaded.subject.otsu,
+            suggested_iso: loaded.subject.suggested_iso,
+            percentiles: Percentiles {
+                p1: percentile(1.0),
+                p50: percentile(50.0),
+                p99: percentile(99.0),
+                p99_9: percentile(99.9),
+            },
+            octree: OctreeInfo {
+                leaf: source.leaf.edge(),
+                levels: octree.levels().len(),
+                bytes: octree.bytes(),
+                share_of_volume: octree.bytes() as f64 / bytes as f64,
+            },
+        }
+    }
+
+    fn print(&self, out: &mut dyn Write, histogram: &str) -> io::Result<()> {
+        let volume = &self.volume;
+        let triple = |[x, y, z]: [f64; 3]| format!("{x:.6} {y:.6} {z:.6}");
+        let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
+        row("file", volume.file.clone())?;
+        let [nx, ny, nz] = volume.dims;
+        row(
+            "voxels",
+            format!("{nx}x{ny}x{nz} {}, {} bytes", volume.kind, self.bytes),
+        )?;
+        row("spacing", format!("{} mm", triple(volume.spacing_mm)))?;
+        row("size", format!("{} mm", triple(self.size_mm)))?;
+        row("origin", format!("{} mm (LPS)", triple(volume.origin_mm)))?;
+        row("center", format!("{} mm", triple(self.center_mm)))?;
+        for (axis, name) in ["x axis", "y axis", "z axis"].into_iter().enumerate() {
+            row(name, triple(volume.direction.map(|world| world[axis])))?;
+        }
+        row(
+            "values",
+            format!("{} to {}", volume.range[0], volume.range[1]),
+        )?;
+        row("non-finite", format!("{} voxels", volume.non_finite))?;
+        let p = &self.percentiles;
+        row(
+            "percentiles",
+            format!(
+                "1%: {}  50%: {}  99%: {}  99.9%: {}",
+                short(p.p1),
+                short(p.p50),
+                short(p.p99),
+                short(p.p99_9)
+            ),
+        )?;
+        row("suggested iso", short(self.suggested_iso))?;
+        row("otsu", short(self.otsu))?;
+        let tree = &self.octree;
+        row(
+            "octree",
+            format!(
+                "{} levels, leaves of {} voxels, {} bytes: {:.2} % of the volume",
+                tree.levels,
+                tree.leaf,
+                tree.bytes,
+                100.0 * tree.share_of_volume
+            ),
+        )?;
+        writeln!(out, "\n{histogram}")
+    }
+}
+
+/// Six significant digits.
+fn short(value: f64) -> String {
+    match format!("{value:.5e}").parse::<f64>() {
+        Ok(rounded) => rounded.to_string(),
+        Err(_) => value.to_string(),
+    }
+}

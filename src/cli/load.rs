@@ -1,0 +1,121 @@
+//! The volume that the options name: read, smoothed, and as the scene sees it.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::error::{Error, Result};
+use crate::octree::Leaf;
+use crate::progress::Progress;
+use crate::scene::{NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions};
+use crate::volume::{
+    self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, suggested_iso,
+};
+
+use super::terminal::note;
+
+/// Bins of the histogram from which iso values are suggested.
+const BINS: usize = 1024;
+
+/// A volume and what was learnt on the way.
+pub struct Loaded {
+    pub volume: Volume,
+    pub histogram: Histogram,
+    pub subject: Subject,
+    /// In the file, before smoothing.
+    pub non_finite: u64,
+    pub read_ms: f64,
+    pub smooth_ms: f64,
+}
+
+/// What has to be known before a volume is read.
+pub struct Source {
+    pub path: PathBuf,
+    pub leaf: Leaf,
+    read: ReadOptions,
+    sigma_mm: f64,
+}
+
+impl Source {
+    /// # Errors
+    /// No volume named; a layout or leaf edge that makes no sense.
+    pub fn of(options: &VolumeOptions) -> Result<Self> {
+        let Some(file) = &options.volume else {
+            return Err(Error::usage("no volume was named")
+                .hint("give its file as the first argument, or as 'volume' in the scene file"));
+        };
+        let size = options.raw_size.as_ref();
+        let size = size.map(|text| text.0.parse::<RawSize>());
+        let element = options.raw_type.as_ref();
+        let element = element.map(|text| text.parse::<RawType>());
+        let leaf = match options.octree_leaf {
+            Some(edge) => Leaf::new(edge).map_err(|e| e.at("octree-leaf"))?,
+            None => Leaf::default(),
+        };
+        let raw = RawLayout {
+            size: size.transpose().map_err(|e| e.at("raw-size"))?,
+            element: element.transpose().map_err(|e| e.at("raw-type"))?,
+            spacing_mm: options.raw_spacing.map(|SpacingMm(each)| each.into()),
+            offset_bytes: options.raw_offset,
+        };
+        let non_finite = match options.non_finite.unwrap_or_default() {
+            NonFiniteRule::Replace => NonFinite::Replace,
+            NonFiniteRule::Refuse => NonFinite::Refuse,
+        };
+        Ok(Self {
+            path: file.0.clone(),
+            leaf,
+            read: ReadOptions {
+                frame: options.frame.unwrap_or(0),
+                non_finite,
+                raw,
+            },
+            sigma_mm: options.smooth.map_or(0.0, SigmaMm::get),
+        })
+    }
+
+    /// Reads and smooths the volume, and tells the user what was noteworthy.
+    pub fn load(&self, progress: &dyn Progress) -> Result<Loaded> {
+        let began = Instant::now();
+        let mut volume = volume::read(&self.path, &self.read, progress)?;
+        let read_ms = ms_since(began);
+        let non_finite = volume.non_finite();
+        volume.notes().iter().for_each(note);
+        let began = Instant::now();
+        let mut smooth_ms = 0.0;
+        if self.sigma_mm > 0.0 {
+            volume = volume::smooth(&volume, self.sigma_mm, progress)?;
+            smooth_ms = ms_since(began);
+        }
+        let histogram = Histogram::of(&volume, BINS);
+        let (center_world, radius_mm) = volume.bounding_sphere();
+        let subject = Subject {
+            center_world,
+            radius_mm,
+            range: volume.range(),
+            otsu: histogram.otsu(),
+            suggested_iso: suggested_iso(&histogram),
+        };
+        Ok(Loaded {
+            volume,
+            histogram,
+            subject,
+            non_finite,
+            read_ms,
+            smooth_ms,
+        })
+    }
+}
+
+/// The flags over the scene file, where there is one; all that can be checked without the volume
+/// is.
+pub fn options(flags: SceneOptions, scene_file: Option<&Path>) -> Result<SceneOptions> {
+    let file = match scene_file {
+        Some(path) => SceneOptions::read(path)?,
+        None => SceneOptions::default(),
+    };
+    flags.over(file).checked()
+}
+
+pub fn ms_since(began: Instant) -> f64 {
+    began.elapsed().as_secs_f64() * 1e3
+}

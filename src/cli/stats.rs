@@ -1,0 +1,153 @@
+//! The statistics of a job (`--stats`): what was rendered, on what, how long it took.
+
+use std::io::Write;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::output::write_atomically;
+use crate::scene::{Picture, SceneOptions};
+use crate::volume::Volume;
+
+#[derive(Serialize)]
+pub struct Stats<'a> {
+    pub version: &'static str,
+    pub command: &'static str,
+    /// Everything that determines the picture, in the form of a scene file.
+    pub scene: &'a SceneOptions,
+    pub volume: VolumeStats,
+    pub device: DeviceStats,
+    /// The picture file's channels, in order.
+    pub channels: Vec<String>,
+    pub times_ms: Times,
+    pub passes: Vec<PassStats>,
+    pub counts: Counts,
+    pub memory: Memory,
+}
+
+#[derive(Serialize)]
+pub struct VolumeStats {
+    pub file: String,
+    pub dims: [u32; 3],
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    pub spacing_mm: [f64; 3],
+    pub origin_mm: [f64; 3],
+    /// Rows of the matrix whose columns are the index axes' directions.
+    pub direction: [[f64; 3]; 3],
+    pub range: [f64; 2],
+    pub non_finite: u64,
+}
+
+impl VolumeStats {
+    pub fn of(file: &Path, volume: &Volume, non_finite: u64) -> Self {
+        let geometry = volume.geometry();
+        let range = volume.range();
+        Self {
+            file: file.display().to_string(),
+            dims: volume.dims().array(),
+            kind: volume.voxels().voxel_type().name(),
+            spacing_mm: geometry.spacing_mm().to_array(),
+            origin_mm: geometry.origin_mm().to_array(),
+            direction: geometry.direction().transpose().to_cols_array_2d(),
+            range: [range.min, range.max],
+            non_finite,
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub struct DeviceStats {
+    pub name: String,
+    pub platform: String,
+    pub driver: String,
+}
+
+#[derive(Serialize, Default)]
+pub struct Times {
+    pub read: f64,
+    pub smooth: f64,
+    pub octree: f64,
+    /// Kernel compilation.
+    pub build: f64,
+    pub upload: f64,
+    /// All passes of the frame.
+    pub render: f64,
+    pub encode: f64,
+}
+
+#[derive(Serialize)]
+pub struct PassStats {
+    pub name: String,
+    pub ms: f64,
+}
+
+#[derive(Serialize)]
+pub struct Counts {
+    pub rays: u64,
+    pub samples: u64,
+    pub nodes: u64,
+    pub hits: u64,
+}
+
+impl Counts {
+    /// From a frame with counters and kinds. In emission a hit is a pixel with any opacity.
+    pub fn of(frame: &Frame, picture: &Picture) -> Self {
+        let sum = |plane: &Option<Vec<u32>>| {
+            let counts = plane.iter().flatten();
+            counts.map(|&n| u64::from(n)).sum()
+        };
+        let hits = match picture {
+            Picture::Emission { .. } => frame.color.iter().filter(|c| c[3] > 0.0).count(),
+            _ => frame
+                .kind
+                .iter()
+                .flatten()
+                .filter(|&&kind| kind > 0)
+                .count(),
+        };
+        Self {
+            rays: frame.size.pixels() as u64,
+            samples: sum(&frame.steps),
+            nodes: sum(&frame.nodes),
+            hits: hits as u64,
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub struct Memory {
+    /// The most that the process held; unknown on some systems.
+    pub host_peak_bytes: Option<u64>,
+    pub device_bytes: u64,
+}
+
+impl Memory {
+    pub fn now(device_bytes: u64) -> Self {
+        Self {
+            host_peak_bytes: host_peak_bytes(),
+            device_bytes,
+        }
+    }
+}
+
+/// Linux tells it in kB.
+fn host_peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    kilobytes.checked_mul(1024)
+}
+
+impl Stats<'_> {
+    pub fn write(&self, path: &Path) -> Result<()> {
+        write_atomically(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self)
+                .map_err(std::io::Error::from)
+                .and_then(|()| writeln!(out))
+                .map_err(|cause| Error::io(path, "write", &cause))
+        })
+    }
+}

@@ -1,0 +1,29 @@
+//! A group of options: flags, scene file keys and stats entries of the same names.
+
+/// Declares a struct whose fields are all optional, with `over`: what it says, and for what it
+/// does not say, what another says.
+macro_rules! group {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[$field_meta:meta])* $field:ident: $type:ty,)*
+    }) => {
+        #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize, serde::Deserialize)]
+        $(#[$meta])*
+        #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+        pub struct $name {
+            $(
+                $(#[$field_meta])*
+                #[serde(skip_serializing_if = "Option::is_none")]
+                pub $field: Option<$type>,
+            )*
+        }
+
+        impl $name {
+            /// The same options, those not given taken from `base`.
+            #[must_use]
+            pub fn over(self, base: Self) -> Self {
+                Self { $($field: self.$field.or(base.$field),)* }
+            }
+        }
+    };
+}
+pub(super) use group;

@@ -1,0 +1,183 @@
+//! Scene options: the flags of the command line, the keys of the scene file and the stats' `scene`
+//! are this one thing.
+//!
+//! Every option may be absent. [`SceneOptions::resolve`] fills in the defaults, which depend on the
+//! volume, and makes the [`Scene`]; the filled options, read back as a scene file, make the same
+//! scene again.
+
+mod camera;
+mod file;
+mod group;
+mod numbers;
+mod picture;
+mod plain;
+mod sampling;
+mod shown;
+mod subject;
+mod tone;
+mod values;
+mod volume;
+mod words;
+
+pub use camera::CameraOptions;
+pub use numbers::{
+    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
+    StepVoxels, Termination, Zoom,
+};
+pub use picture::{PictureOptions, TransferChoice};
+pub use sampling::SamplingOptions;
+pub use subject::Subject;
+pub use tone::ToneOptions;
+pub use values::{CArm, LightChoice, SpacingMm, SrgbColor, Threshold, Triple, WindowEnds};
+pub use volume::{FilePath, RawSizeText, VolumeOptions};
+pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
+
+use crate::error::{Error, Result};
+use crate::extent::{ImageSize, Range};
+use crate::scene::{Scene, TransferFile};
+
+/// Everything that determines a picture, as far as it was said.
+#[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
+pub struct SceneOptions {
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub volume: VolumeOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub picture: PictureOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub camera: CameraOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub sampling: SamplingOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub tone: ToneOptions,
+}
+
+/// A scene, the options that make it, and what was chosen for the user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resolved {
+    pub scene: Scene,
+    /// With every default in its place.
+    pub options: SceneOptions,
+    /// One sentence each about a default or computed value which the user may want to know.
+    pub notes: Vec<String>,
+}
+
+impl SceneOptions {
+    /// These flags over a scene file's options. What a flag rules out in the file, such as the eye
+    /// when the flag is a view, or the iso value when it is another mode, goes with it.
+    #[must_use]
+    pub fn over(self, file: Self) -> Self {
+        Self {
+            volume: self.volume.over(file.volume),
+            camera: self.camera.clone().over(self.camera.keep_of(file.camera)),
+            picture: self
+                .picture
+                .clone()
+                .over(self.picture.keep_of(file.picture)),
+            sampling: self.sampling.over(file.sampling),
+            tone: self.tone.over(file.tone),
+        }
+    }
+
+    /// All that can be known without the volume: contradictions refused, the transfer function
+    /// read.
+    ///
+    /// # Errors
+    /// Options that contradict each other or mean nothing to the mode; a transfer function that
+    /// cannot be read.
+    pub fn checked(mut self) -> Result<Self> {
+        self.camera.check()?;
+        self.picture.check()?;
+        if let Some(choice) = self.picture.tf.take() {
+            self.picture.tf = Some(TransferChoice::Written(choice.read()?));
+        }
+        Ok(self)
+    }
+
+    /// The scene for a volume.
+    ///
+    /// # Errors
+    /// As [`SceneOptions::checked`]; an empty window; an impossible camera.
+    pub fn resolve(&self, subject: &Subject) -> Result<Resolved> {
+        let options = Self {
+            volume: self.volume.clone().filled(),
+            picture: self.picture.clone().filled(subject)?,
+            camera: self.camera.clone().filled(subject)?,
+            sampling: self.sampling.clone().filled()?,
+            tone: self.tone.clone().filled()?,
+        };
+        let size = match options.camera.size {
+            Some(size) => size,
+            None => ImageSize::new(512, 512)?,
+        };
+        let scene = Scene {
+            size,
+            camera: options.camera.camera()?,
+            picture: options.picture.picture(subject.range)?,
+            sampling: options.sampling.sampling(),
+            light: options.picture.light(),
+            tone: options.tone.tone(),
+        };
+        let notes = self.notes(&options, subject);
+        Ok(Resolved {
+            scene,
+            options,
+            notes,
+        })
+    }
+
+    fn notes(&self, filled: &Self, subject: &Subject) -> Vec<String> {
+        let mut notes = Vec::new();
+        let given = &self.picture;
+        let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {
+            let Some(value) = filled else { return };
+            match given {
+                None => notes.push(format!(
+                    "{key} = {value}, suggested by the histogram: --{key} chooses another"
+                )),
+                Some(Threshold::Value(_)) => {}
+                Some(computed) => notes.push(format!("{key} = {computed} is {value}")),
+            }
+        };
+        threshold("iso", given.iso, filled.picture.iso);
+        threshold(
+            "lmip-threshold",
+            given.lmip_threshold,
+            filled.picture.lmip_threshold,
+        );
+        if let Some(Threshold::Value(iso)) = filled.picture.iso
+            && !subject.range.contains(iso)
+        {
+            let Range { min, max } = subject.range;
+            notes.push(format!(
+                "iso = {iso} lies outside the volume's values, {min} to {max}: there is no surface"
+            ));
+        }
+        if let (Some(ends), Some(filled)) = (given.window, filled.picture.window)
+            && ends != filled
+        {
+            notes.push(format!("window = {ends} is {filled}"));
+        }
+        if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {
+            let preset = TransferFile::DEFAULT_PRESET;
+            notes.push(format!("tf = {preset}: --tf chooses another"));
+        }
+        notes
+    }
+
+    /// As the text of a scene file.
+    ///
+    /// # Errors
+    /// A value that TOML cannot hold (a whole number of 64 bits).
+    pub fn to_toml(&self) -> Result<String> {
+        let refused = |error: toml::ser::Error| {
+            Error::failed(format!("the scene cannot be written as TOML: {error}"))
+        };
+        let table = toml::Table::try_from(self).map_err(refused)?;
+        toml::to_string(&table).map_err(refused)
+    }
+}

@@ -1,0 +1,357 @@
+//! Picture options: what is shown. Each mode takes those that mean something to it, and refuses
+//! the others.
+
+use std::convert::Infallible;
+use std::fmt;
+use std::str::FromStr;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::group::group;
+use super::numbers::{Reflectance, Shininess, Termination};
+use super::subject::Subject;
+use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
+use super::words::{Mode, Shading, Switch};
+use crate::error::{Error, Result};
+use crate::scene::{Refine, TransferFile};
+
+group! {
+    /// What is shown.
+    #[command(next_help_heading = "Picture")]
+    pub struct PictureOptions {
+        /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission
+        /// and absorption) [default: iso]
+        #[arg(long, value_name = "MODE")]
+        mode: Mode,
+
+        /// iso: the surface's value; a number, a share of the value range such as 50%, or otsu
+        /// [default: suggested by the volume's histogram]
+        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        iso: Threshold,
+
+        /// iso: close the surface where the volume ends [default: on]
+        #[arg(long, value_name = "on|off")]
+        caps: Switch,
+
+        /// iso: how the hit is refined between samples: none, bisection, regula-falsi, illinois or
+        /// newton, :N for N iterations [default: regula-falsi:5]
+        #[arg(long, value_name = "METHOD[:N]")]
+        refine: Refine,
+
+        /// iso: the surface's colour, sRGB r,g,b from 0 to 1 or #rrggbb [default: warm ivory,
+        /// 0.94,0.87,0.76]
+        #[arg(long, value_name = "COLOR")]
+        color: SrgbColor,
+
+        /// Projections: the values shown black and white; numbers, shares such as 5%, or otsu
+        /// [default: the whole value range]
+        #[arg(long, value_name = "LO,HI", allow_hyphen_values = true)]
+        window: WindowEnds,
+
+        /// lmip: the value from which a local maximum counts [default: the suggested iso value]
+        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        lmip_threshold: Threshold,
+
+        /// dvr: the transfer function, a TOML file or a preset: cta (Hounsfield units), mra or
+        /// 3dra (shares of the value range) [default: 3dra]
+        #[arg(long, value_name = "FILE|PRESET")]
+        tf: TransferChoice,
+
+        /// dvr: the opacity at which a ray ends; the colour lost is at most 1 minus this
+        /// [default: 0.999]
+        #[arg(long, value_name = "OPACITY")]
+        termination: Termination,
+
+        /// iso, dvr: none, phong or blinn-phong [default: phong for iso, none for dvr]
+        #[arg(long, value_name = "NAME")]
+        shading: Shading,
+
+        /// Light reflected from everywhere [default: 0.1]
+        #[arg(long, value_name = "A")]
+        ambient: Reflectance,
+
+        /// Light reflected from the lamp in all directions [default: 0.9]
+        #[arg(long, value_name = "D")]
+        diffuse: Reflectance,
+
+        /// Light mirrored from the lamp [default: 0.2]
+        #[arg(long, value_name = "S")]
+        specular: Reflectance,
+
+        /// Sharpness of the mirrored light [default: 32]
+        #[arg(long, value_name = "N")]
+        shininess: Shininess,
+
+        /// headlight, or the world direction toward a distant light [default: headlight]
+        #[arg(long, value_name = "headlight|X,Y,Z", allow_hyphen_values = true)]
+        light: LightChoice,
+    }
+}
+
+/// `--tf`: a preset's name or a file's, or in a scene file the function itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum TransferChoice {
+    Named(String),
+    Written(TransferFile),
+}
+
+impl TransferChoice {
+    /// # Errors
+    /// As [`TransferFile::named`].
+    pub fn read(self) -> Result<TransferFile> {
+        match self {
+            Self::Named(name) => TransferFile::named(&name),
+            Self::Written(file) => Ok(file),
+        }
+    }
+}
+
+impl FromStr for TransferChoice {
+    type Err = Infallible;
+
+    fn from_str(name: &str) -> std::result::Result<Self, Infallible> {
+        Ok(Self::Named(name.to_owned()))
+    }
+}
+
+impl<'de> Deserialize<'de> for TransferChoice {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        struct NameOrTable;
+
+        impl<'de> Visitor<'de> for NameOrTable {
+            type Value = TransferChoice;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a preset, a file's name, or a table with points")
+            }
+
+            fn visit_str<E>(self, name: &str) -> std::result::Result<Self::Value, E> {
+                Ok(TransferChoice::Named(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(
+                self,
+                table: A,
+            ) -> std::result::Result<Self::Value, A::Error> {
+                TransferFile::deserialize(MapAccessDeserializer::new(table))
+                    .map(TransferChoice::Written)
+            }
+        }
+
+        from.deserialize_any(NameOrTable)
+    }
+}
+
+/// A key, the modes it belongs to, and why no other.
+struct Belongs {
+    key: &'static str,
+    modes: &'static [Mode],
+    why: &'static str,
+}
+
+const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
+const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
+const UNLIT: &str = "a projection has no surface to light";
+
+#[rustfmt::skip]
+const BELONGS: [Belongs; 14] = [
+    Belongs { key: "iso", modes: &[Mode::Iso], why: "only a surface has an iso value" },
+    Belongs { key: "caps", modes: &[Mode::Iso], why: "only a surface is closed where the volume ends" },
+    Belongs { key: "refine", modes: &[Mode::Iso], why: "only a surface has a hit to refine" },
+    Belongs { key: "color", modes: &[Mode::Iso], why: "a projection is grey, and dvr takes its colours from the transfer function" },
+    Belongs { key: "window", modes: PROJECTIONS, why: "only a projection shows values as grey" },
+    Belongs { key: "lmip-threshold", modes: &[Mode::Lmip], why: "only lmip looks for a local maximum" },
+    Belongs { key: "tf", modes: &[Mode::Dvr], why: "only dvr maps values to opacity; a surface has 'color', a projection 'window'" },
+    Belongs { key: "termination", modes: &[Mode::Dvr], why: "only dvr gathers opacity along the ray" },
+    Belongs { key: "shading", modes: LIT, why: UNLIT },
+    Belongs { key: "ambient", modes: LIT, why: UNLIT },
+    Belongs { key: "diffuse", modes: LIT, why: UNLIT },
+    Belongs { key: "specular", modes: LIT, why: UNLIT },
+    Belongs { key: "shininess", modes: LIT, why: UNLIT },
+    Belongs { key: "light", modes: LIT, why: UNLIT },
+];
+
+impl PictureOptions {
+    /// The keys given, `mode` aside.
+    fn keys(&self) -> Vec<&'static str> {
+        let given = [
+            ("iso", self.iso.is_some()),
+            ("caps", self.caps.is_some()),
+            ("refine", self.refine.is_some()),
+            ("color", self.color.is_some()),
+            ("window", self.window.is_some()),
+            ("lmip-threshold", self.lmip_threshold.is_some()),
+            ("tf", self.tf.is_some()),
+            ("termination", self.termination.is_some()),
+            ("shading", self.shading.is_some()),
+            ("ambient", self.ambient.is_some()),
+            ("diffuse", self.diffuse.is_some()),
+            ("specular", self.specular.is_some()),
+            ("shininess", self.shininess.is_some()),
+            ("light", self.light.is_some()),
+        ];
+        given
+            .iter()
+            .filter(|(_, is)| *is)
+            .map(|(key, _)| *key)
+            .collect()
+    }
+
+    pub(super) fn mode(&self) -> Mode {
+        self.mode.unwrap_or(Mode::Iso)
+    }
+
+    pub(super) fn shading(&self) -> Shading {
+        self.shading.unwrap_or(match self.mode() {
+            Mode::Iso => Shading::Phong,
+            _ => Shading::None,
+        })
+    }
+
+    /// What of a scene file's picture still applies when these are the flags: another mode drops
+    /// what belongs to the file's mode, no shading drops its light.
+    pub(super) fn keep_of(&self, mut file: Self) -> Self {
+        if let Some(mode) = self.mode
+            && mode != file.mode()
+        {
+            let keeps = |key| {
+                BELONGS
+                    .iter()
+                    .any(|b| b.key == key && b.modes.contains(&mode))
+            };
+            let shading = file
+                .shading
+                .filter(|_| LIT.contains(&mode) && LIT.contains(&file.mode()));
+            file = Self {
+                mode: None,
+                iso: file.iso.filter(|_| keeps("iso")),
+                caps: file.caps.filter(|_| keeps("caps")),
+                refine: file.refine.filter(|_| keeps("refine")),
+                color: file.color.filter(|_| keeps("color")),
+                window: file.window.filter(|_| keeps("window")),
+                lmip_threshold: file.lmip_threshold.filter(|_| keeps("lmip-threshold")),
+                tf: file.tf.filter(|_| keeps("tf")),
+                termination: file.termination.filter(|_| keeps("termination")),
+                shading,
+                ..file
+            };
+            let shading = self.shading.or(shading);
+            if shading.is_none_or(|s| s == Shading::None) {
+                file = file.unlit();
+            }
+        }
+        if self.shading == Some(Shading::None) {
+            file = file.unlit();
+        }
+        file
+    }
+
+    fn unlit(self) -> Self {
+        Self {
+            ambient: None,
+            diffuse: None,
+            specular: None,
+            shininess: None,
+            light: None,
+            ..self
+        }
+    }
+
+    /// # Errors
+    /// An option that means nothing to the mode, or to a picture without shading.
+    pub(super) fn check(&self) -> Result<()> {
+        let mode = self.mode();
+        let given = self.keys();
+        if let Some(stray) = BELONGS
+            .iter()
+            .find(|b| given.contains(&b.key) && !b.modes.contains(&mode))
+        {
+            let modes: Vec<String> = stray.modes.iter().map(Mode::to_string).collect();
+            return Err(Error::usage(format!(
+                "'{}' does not go with mode '{mode}': {}",
+                stray.key, stray.why
+            ))
+            .hint(format!("it belongs to mode {}", modes.join(", "))));
+        }
+        let light = ["ambient", "diffuse", "specular", "shininess", "light"];
+        if self.shading() == Shading::None
+            && let Some(key) = light.iter().find(|key| given.contains(key))
+        {
+            return Err(Error::usage(format!(
+                "'{key}' has no effect in mode '{mode}' without shading"
+            ))
+            .hint("choose a shading: phong or blinn-phong"));
+        }
+        Ok(())
+    }
+
+    /// With every default of its mode in its place, every value physical, and the transfer
+    /// function written out: filling again changes nothing.
+    pub(super) fn filled(self, subject: &Subject) -> Result<Self> {
+        self.check()?;
+        let mode = self.mode();
+        let lit = self.lit()?;
+        let value = |threshold: Option<Threshold>, default: f64| {
+            let value = threshold.map_or(default, |t| t.resolve(subject));
+            Some(Threshold::Value(value))
+        };
+        let bare = Self {
+            mode: Some(mode),
+            ..Self::default()
+        };
+        Ok(match mode {
+            Mode::Iso => Self {
+                iso: value(self.iso, subject.suggested_iso),
+                caps: self.caps.or(Some(Switch::On)),
+                refine: self.refine.or(Some(Refine::default())),
+                color: self.color.or(Some(Self::IVORY)),
+                mode: Some(mode),
+                ..lit
+            },
+            Mode::Mip | Mode::Minip | Mode::Mean => Self {
+                window: Some(window_values(self.window, subject)),
+                ..bare
+            },
+            Mode::Lmip => Self {
+                window: Some(window_values(self.window, subject)),
+                lmip_threshold: value(self.lmip_threshold, subject.suggested_iso),
+                ..bare
+            },
+            Mode::Dvr => {
+                let file = match self.tf {
+                    Some(choice) => choice.read()?,
+                    None => TransferFile::named(TransferFile::DEFAULT_PRESET)?,
+                };
+                Self {
+                    tf: Some(TransferChoice::Written(file.in_values(subject.range))),
+                    termination: match self.termination {
+                        Some(termination) => Some(termination),
+                        None => Some(Termination::new(Self::DEFAULT_TERMINATION)?),
+                    },
+                    mode: Some(mode),
+                    ..lit
+                }
+            }
+        })
+    }
+}
+
+/// The whole value range where no window is given; a constant volume is middle grey.
+fn window_values(window: Option<WindowEnds>, subject: &Subject) -> WindowEnds {
+    let range = subject.range;
+    let (low, high) = match window {
+        Some(ends) => (ends.low.resolve(subject), ends.high.resolve(subject)),
+        None if range.min < range.max => (range.min, range.max),
+        None => {
+            let margin = f64::max(0.5, range.min.abs() * 1e-3);
+            (range.min - margin, range.max + margin)
+        }
+    };
+    WindowEnds {
+        low: Threshold::Value(low),
+        high: Threshold::Value(high),
+    }
+}

@@ -1,0 +1,56 @@
+//! Sampling options: how rays are followed.
+
+use super::group::group;
+use super::numbers::StepVoxels;
+use super::words::Switch;
+use crate::error::Result;
+use crate::scene::{Filter, Sampling, Traverse};
+
+group! {
+    /// How rays are followed through the volume.
+    #[command(next_help_heading = "Sampling")]
+    pub struct SamplingOptions {
+        /// Distance of samples along a ray, in voxels of the smallest spacing [default: 0.5]
+        #[arg(long, value_name = "VOXELS")]
+        step: StepVoxels,
+
+        /// The field between voxel centres: nearest or linear [default: linear]
+        #[arg(long, value_name = "nearest|linear")]
+        filter: Filter,
+
+        /// How empty space is skipped: uniform, kd-restart or hierarchical; never changes the
+        /// picture [default: hierarchical]
+        #[arg(long, value_name = "NAME")]
+        traverse: Traverse,
+
+        /// Skip empty space; never changes the picture [default: on]
+        #[arg(long, value_name = "on|off")]
+        skip: Switch,
+    }
+}
+
+impl SamplingOptions {
+    /// With every default in its place.
+    pub(super) fn filled(self) -> Result<Self> {
+        let default = Sampling::default();
+        Ok(Self {
+            step: match self.step {
+                Some(step) => Some(step),
+                None => Some(StepVoxels::new(default.step_voxels)?),
+            },
+            filter: self.filter.or(Some(default.filter)),
+            traverse: self.traverse.or(Some(default.traverse)),
+            skip: self.skip.or(Some(default.skip.into())),
+        })
+    }
+
+    pub(super) fn sampling(&self) -> Sampling {
+        let default = Sampling::default();
+        Sampling {
+            step_voxels: self.step.map_or(default.step_voxels, StepVoxels::get),
+            filter: self.filter.unwrap_or(default.filter),
+            traverse: self.traverse.unwrap_or(default.traverse),
+            skip: self.skip.map_or(default.skip, Switch::is_on),
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Values with a text form of their own: thresholds, points, colours, windows, angulations.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use super::numbers::number;
+use super::plain::plain;
+use super::subject::Subject;
+use crate::error::{Error, Result};
+use crate::scene::Light;
+
+/// A value of the volume: as it is, as a share of the value range, or Otsu's threshold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Threshold {
+    Value(f64),
+    /// 0..1 of the value range, written in percent.
+    Share(f64),
+    Otsu,
+}
+
+impl Threshold {
+    /// The physical value.
+    pub fn resolve(self, subject: &Subject) -> f64 {
+        match self {
+            Self::Value(value) => value,
+            Self::Share(share) => subject.range.at(share),
+            Self::Otsu => subject.otsu,
+        }
+    }
+}
+
+impl FromStr for Threshold {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let text = text.trim();
+        if text == "otsu" {
+            return Ok(Self::Otsu);
+        }
+        if let Some(percent) = text.strip_suffix('%') {
+            return match number(percent) {
+                Ok(p) if (0.0..=100.0).contains(&p) => Ok(Self::Share(p / 100.0)),
+                _ => Err(Error::usage(format!(
+                    "'{text}' is not a share of the value range: write 0% to 100%"
+                ))),
+            };
+        }
+        number(text).map(Self::Value).map_err(|_| {
+            Error::usage(format!(
+                "'{text}' is not a value: write a number, a share of the value range such as 50%, or otsu"
+            ))
+        })
+    }
+}
+
+impl fmt::Display for Threshold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Value(value) => write!(f, "{value}"),
+            Self::Share(share) => write!(f, "{}%", share * 100.0),
+            Self::Otsu => f.write_str("otsu"),
+        }
+    }
+}
+
+/// Three finite numbers `x,y,z`: a point or direction in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triple(pub DVec3);
+
+impl FromStr for Triple {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || Error::usage(format!("'{text}' is not three numbers x,y,z"));
+        let numbers: Result<Vec<f64>> = text.split(',').map(number).collect();
+        match numbers.map_err(|_| wrong())?[..] {
+            [x, y, z] => Ok(Self(DVec3::new(x, y, z))),
+            _ => Err(wrong()),
+        }
+    }
+}
+
+impl fmt::Display for Triple {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{},{}", self.0.x, self.0.y, self.0.z)
+    }
+}
+
+/// An sRGB-encoded colour, channels 0..1: `r,g,b` or `#rrggbb`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SrgbColor(pub [f64; 3]);
+
+impl FromStr for SrgbColor {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || {
+            Error::usage(format!(
+                "'{text}' is not a colour: write r,g,b from 0 to 1, or #rrggbb"
+            ))
+        };
+        if let Some(digits) = text.strip_prefix('#') {
+            let hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
+            let packed = u32::from_str_radix(digits, 16).ok().filter(|_| hex);
+            let [_, r, g, b] = packed.ok_or_else(wrong)?.to_be_bytes();
+            return Ok(Self([r, g, b].map(|byte| f64::from(byte) / 255.0)));
+        }
+        let Triple(rgb) = text.parse().map_err(|_| wrong())?;
+        if rgb.min_element() < 0.0 || rgb.max_element() > 1.0 {
+            return Err(wrong());
+        }
+        Ok(Self(rgb.to_array()))
+    }
+}
+
+impl fmt::Display for SrgbColor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [r, g, b] = self.0;
+        write!(f, "{r},{g},{b}")
+    }
+}
+
+/// `--light`: `headlight`, or the direction toward a distant light, of any length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightChoice {
+    Headlight,
+    Toward(DVec3),
+}
+
+impl LightChoice {
+    pub fn light(self) -> Light {
+        match self {
+            Self::Headlight => Light::Headlight,
+            Self::Toward(direction) => Light::Distant {
+                toward_light: direction.normalize(),
+            },
+        }
+    }
+}
+
+impl FromStr for LightChoice {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if text == "headlight" {
+            return Ok(Self::Headlight);
+        }
+        let direction = text.parse::<Triple>().map(|Triple(d)| d);
+        match direction {
+            Ok(d) if d.try_normalize().is_some() => Ok(Self::Toward(d)),
+            _ => Err(Error::usage(format!(
+                "'{text}' is not a light: write headlight, or the direction x,y,z toward it"
+            ))),
+        }
+    }
+}
+
+impl fmt::Display for LightChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Headlight => f.write_str("headlight"),
+            Self::Toward(direction) => Triple(*direction).fmt(f),
+        }
+    }
+}
+
+/// `--window LO,HI`: the values shown black and white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindowEnds {
+    pub low: Threshold,
+    pub high: Threshold,
+}
+
+impl FromStr for WindowEnds {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let Some((low, high)) = text.split_once(',') else {
+            return Err(Error::usage(format!(
+                "'{text}' is not a window: write LO,HI, such as 100,500 or 5%,60%"
+            )));
+        };
+        Ok(Self {
+            low: low.parse()?,
+            high: high.parse()?,
+        })
+    }
+}
+
+impl fmt::Display for WindowEnds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.low, self.high)
+    }
+}
+
+/// `--carm`: a C-arm's angulation, such as `LAO 30 CRA 20`. LAO and CRA are positive, RAO and CAU
+/// negative: the eye's azimuth and elevation from the anterior view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CArm {
+    pub azimuth_deg: f64,
+    pub elevation_deg: f64,
+}
+
+impl FromStr for CArm {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || {
+            Error::usage(format!(
+                "'{text}' is not a C-arm angulation: write LAO or RAO and CRA or CAU, each with degrees from 0 to 180, such as 'LAO 30 CRA 20'"
+            ))
+        };
+        let mut azimuth_deg = None;
+        let mut elevation_deg = None;
+        let mut rest = text.trim();
+        while !rest.is_empty() {
+            let is_letter = |c: char| c.is_ascii_alphabetic();
+            let (name, after) = rest.split_at(rest.find(|c| !is_letter(c)).ok_or_else(wrong)?);
+            let after = after.trim_start();
+            let (degrees, after) = after.split_at(after.find(is_letter).unwrap_or(after.len()));
+            let degrees = number(degrees.trim_end_matches([' ', ',', '/', '°'])).ok();
+            let degrees = degrees
+                .filter(|d| (0.0..=180.0).contains(d))
+                .ok_or_else(wrong)?;
+            let (axis, signed) = match name.to_ascii_uppercase().as_str() {
+                "LAO" => (&mut azimuth_deg, degrees),
+                "RAO" => (&mut azimuth_deg, -degrees),
+                "CRA" | "CRAN" => (&mut elevation_deg, degrees),
+                "CAU" | "CAUD" => (&mut elevation_deg, -degrees),
+                _ => return Err(wrong()),
+            };
+            if axis.replace(signed).is_some() {
+                return Err(wrong());
+            }
+            rest = after;
+        }
+        if azimuth_deg.is_none() && elevation_deg.is_none() {
+            return Err(wrong());
+        }
+        Ok(Self {
+            azimuth_deg: azimuth_deg.unwrap_or(0.0),
+            elevation_deg: elevation_deg.unwrap_or(0.0),
+        })
+    }
+}
+
+impl fmt::Display for CArm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let side = if self.azimuth_deg < 0.0 { "RAO" } else { "LAO" };
+        let end = if self.elevation_deg < 0.0 {
+            "CAU"
+        } else {
+            "CRA"
+        };
+        let (azimuth, elevation) = (self.azimuth_deg.abs(), self.elevation_deg.abs());
+        write!(f, "{side} {azimuth} {end} {elevation}")
+    }
+}
+
+/// `--raw-spacing`: one positive spacing for all axes, or three.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpacingMm(pub [f64; 3]);
+
+impl FromStr for SpacingMm {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let spacing = match number(text) {
+            Ok(all) => Ok(DVec3::splat(all)),
+            Err(_) => text.parse::<Triple>().map(|Triple(each)| each),
+        };
+        match spacing {
+            Ok(s) if s.min_element() > 0.0 => Ok(Self(s.to_array())),
+            _ => Err(Error::usage(format!(
+                "'{text}' is not a spacing: write one positive number of mm, or three x,y,z"
+            ))),
+        }
+    }
+}
+
+impl fmt::Display for SpacingMm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Triple(self.0.into()).fmt(f)
+    }
+}
+
+plain!(
+    Threshold,
+    Triple,
+    SrgbColor,
+    LightChoice,
+    WindowEnds,
+    CArm,
+    SpacingMm
+);

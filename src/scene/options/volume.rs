@@ -1,0 +1,123 @@
+//! Which volume, and how it is read: what the voxels are before anything looks at them.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::{MapValueParser, PathBufValueParser, TypedValueParser, ValueParserFactory};
+
+use super::group::group;
+use super::numbers::SigmaMm;
+use super::plain;
+use super::values::SpacingMm;
+use super::words::NonFiniteRule;
+
+/// A file's path. In a scene file, relative to that file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FilePath(pub PathBuf);
+
+impl FilePath {
+    /// The same file, as seen from where `base` is seen.
+    pub(super) fn seen_from(&self, base: &Path) -> Self {
+        Self(base.join(&self.0))
+    }
+}
+
+impl ValueParserFactory for FilePath {
+    type Parser = MapValueParser<PathBufValueParser, fn(PathBuf) -> Self>;
+
+    fn value_parser() -> Self::Parser {
+        PathBufValueParser::new().map(Self)
+    }
+}
+
+impl serde::Serialize for FilePath {
+    fn serialize<S: serde::Serializer>(&self, into: S) -> Result<S::Ok, S::Error> {
+        into.serialize_str(&self.0.to_string_lossy())
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for FilePath {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        plain::deserialize(from).map(Self)
+    }
+}
+
+/// `NXxNYxNZ`, in a scene file also a list: for the volume's reader to understand.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RawSizeText(pub String);
+
+impl std::str::FromStr for RawSizeText {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(Self(text.replace(',', "x")))
+    }
+}
+
+impl std::fmt::Display for RawSizeText {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+plain::plain!(RawSizeText);
+
+group! {
+    /// The volume and how it is read.
+    #[command(next_help_heading = "Volume")]
+    pub struct VolumeOptions {
+        /// The volume: NRRD, MetaImage, NIfTI, NumPy or headerless raw, recognised by its content
+        #[arg(value_name = "VOLUME", help_heading = None::<&str>)]
+        volume: FilePath,
+
+        /// Which volume of a 4-D file, counted from 0 [default: 0]
+        #[arg(long, value_name = "N")]
+        frame: u32,
+
+        /// Smooth with a Gaussian of this standard deviation in mm [default: 0, not at all]
+        #[arg(long, value_name = "SIGMA_MM")]
+        smooth: SigmaMm,
+
+        /// NaN and infinite voxels: replace (by the smallest finite value) or refuse
+        /// [default: replace]
+        #[arg(long, value_name = "replace|refuse")]
+        non_finite: NonFiniteRule,
+
+        /// Size of a headerless raw file in voxels
+        #[arg(long, value_name = "NXxNYxNZ")]
+        raw_size: RawSizeText,
+
+        /// Voxel type of a headerless raw file, with 'be' for big-endian: u8, i16, u16be, f32 ...
+        #[arg(long, value_name = "TYPE")]
+        raw_type: String,
+
+        /// Voxel spacing of a headerless raw file, mm [default: 1]
+        #[arg(long, value_name = "S|SX,SY,SZ")]
+        raw_spacing: SpacingMm,
+
+        /// Bytes before the first voxel of a headerless raw file [default: 0]
+        #[arg(long, value_name = "BYTES")]
+        raw_offset: u64,
+
+        /// Edge of the octree's leaves in voxels, 4 to 32; never changes the picture [default: 8]
+        #[arg(long, value_name = "VOXELS")]
+        octree_leaf: u32,
+    }
+}
+
+impl VolumeOptions {
+    /// The octree's leaf edge where none is given: level 3 of the paper's hierarchy.
+    pub const DEFAULT_LEAF: u32 = 8;
+
+    /// With every default in its place. The layout of a raw file has none: other files have their
+    /// own.
+    #[must_use]
+    pub(super) fn filled(self) -> Self {
+        Self {
+            frame: self.frame.or(Some(0)),
+            smooth: self.smooth.or(SigmaMm::new(0.0).ok()),
+            non_finite: Some(self.non_finite.unwrap_or_default()),
+            octree_leaf: self.octree_leaf.or(Some(Self::DEFAULT_LEAF)),
+            ..self
+        }
+    }
+}

@@ -1,0 +1,444 @@
+//! The program from outside: exit codes, what goes where, files. Pictures by the reference, small.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_angioray");
+
+/// A folder with a phantom to work in.
+struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    fn empty() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    /// With a ball of 16³ voxels, `ball.nrrd`: 0 outside, 200 inside.
+    fn with_ball() -> Self {
+        let place = Self::empty();
+        place.done("phantom sphere -o ball.nrrd --size 16");
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(PROGRAM);
+        command
+            .args(line.split_whitespace())
+            .current_dir(self.folder.path());
+        command
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.command(line).output().unwrap()
+    }
+
+    /// Runs a line that must succeed; its stdout.
+    fn done(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs a line that must fail with this exit code, one error line, nothing on stdout and no
+    /// file left behind; its stderr.
+    fn refused(&self, line: &str, code: i32) -> String {
+        let before = self.files();
+        let output = self.run(line);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+        assert!(output.stdout.is_empty(), "{line}");
+        let errors = said.lines().filter(|l| l.starts_with("error: ")).count();
+        assert_eq!(errors, 1, "{line}: {said}");
+        let known = ["error: ", "hint: ", "note: "];
+        let stray = said
+            .lines()
+            .find(|l| !known.iter().any(|k| l.starts_with(k)));
+        assert_eq!(stray, None, "{line}");
+        assert!(!said.contains('\u{1b}'), "{line}: {said:?}");
+        assert_eq!(self.files(), before, "{line}");
+        said
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+        files.sort();
+        files
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&std::fs::read_to_string(self.path(name)).unwrap()).unwrap()
+    }
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+const REFERENCE: &str = "--device reference --size 16";
+
+#[test]
+fn help_and_version_go_to_stdout() {
+    let place = Place::empty();
+    assert_eq!(
+        place.done("--version").trim(),
+        concat!("angioray ", env!("CARGO_PKG_VERSION"))
+    );
+    for command in ["render", "info", "phantom", "devices"] {
+        let help = place.done(&format!("{command} --help"));
+        let (_, examples) = help.split_once("Example:").unwrap();
+        assert!(examples.contains(&format!("angioray {command}")), "{help}");
+        assert!(!help.contains('\u{1b}'), "{command}");
+    }
+    let help = place.done("render --help");
+    for heading in ["Picture:", "Camera:", "Sampling:", "Output:", "Device:"] {
+        assert!(help.contains(heading), "{heading}");
+    }
+    let bare = place.run("");
+    assert_eq!(bare.status.code(), Some(2));
+    assert!(bare.stdout.is_empty() && stderr(&bare).contains("Usage:"));
+}
+
+#[test]
+fn a_picture_and_its_statistics() {
+    let place = Place::with_ball();
+    let output = place.run(&format!(
+        "render ball.nrrd -o ball.exr --aov all --iso 50% --stats ball.json {REFERENCE}"
+    ));
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(output.stdout.is_empty());
+    assert!(!stderr(&output).contains('\u{1b}'));
+    let stats = place.json("ball.json");
+    assert_eq!(stats["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(stats["command"], "render");
+    assert_eq!(stats["scene"]["mode"], "iso");
+    assert_eq!(stats["scene"]["iso"], 100);
+    assert_eq!(stats["scene"]["volume"], "ball.nrrd");
+    assert_eq!(stats["volume"]["dims"], serde_json::json!([16, 16, 16]));
+    assert_eq!(stats["volume"]["type"], "u8");
+    assert_eq!(stats["volume"]["range"], serde_json::json!([0.0, 200.0]));
+    assert_eq!(stats["device"]["name"], "reference");
+    assert_eq!(stats["channels"][0], "R");
+    assert!(
+        stats["channels"]
+            .as_array()
+            .unwrap()
+            .contains(&"depth.Z".into())
+    );
+    for time in ["read", "octree", "build", "upload", "render", "encode"] {
+        assert!(stats["times_ms"][time].as_f64().unwrap() >= 0.0, "{time}");
+    }
+    assert_eq!(stats["counts"]["rays"], 256);
+    // A ball of radius 0.35·16 under a bounding sphere of radius 7.5·√3 that touches the edges of
+    // 16 pixels: its disc is about π·(8·5.6/13)² = 37 pixels.
+    let hits = stats["counts"]["hits"].as_u64().unwrap();
+    assert!((28..=48).contains(&hits), "{hits}");
+    assert!(stats["counts"]["samples"].as_u64().unwrap() > hits);
+    let memory = &stats["memory"];
+    assert_eq!(memory["device_bytes"], 0);
+    if cfg!(target_os = "linux") {
+        assert!(memory["host_peak_bytes"].as_u64().unwrap() > 100_000);
+    }
+    // The control: with a quarter of the view, about sixteen times fewer pixels.
+    place.done(&format!(
+        "render ball.nrrd -o far.png --iso 50% --zoom 0.25 --stats far.json {REFERENCE}"
+    ));
+    assert!(place.json("far.json")["counts"]["hits"].as_u64().unwrap() < hits / 4);
+}
+
+#[test]
+fn the_stats_scene_and_the_picture_s_metadata_render_the_same_picture_again() {
+    let place = Place::with_ball();
+    for (name, flags) in [
+        ("iso", "--iso 100 --azimuth 40 --shading blinn-phong"),
+        ("dvr", "--mode dvr --carm RAO20 --background #102030"),
+        ("mip", "--mode mip --window 10%,90%"),
+    ] {
+        place.done(&format!(
+            "render ball.nrrd -o {name}.png {flags} {REFERENCE}"
+        ));
+        let metadata = angioray::frame::read_metadata(&place.path(&format!("{name}.png"))).unwrap();
+        let scene = metadata.iter().find(|(key, _)| key == "scene").unwrap();
+        place.write("again.toml", &scene.1);
+        place.done("render --scene again.toml -o again.png --device reference");
+        place.done(
+            "render --scene again.toml -o other.png --device reference --zoom 1.3 --view left",
+        );
+        let bytes = |name: &str| std::fs::read(place.path(name)).unwrap();
+        assert_eq!(bytes("again.png"), bytes(&format!("{name}.png")), "{name}");
+        // The control: a flag over the scene makes another picture.
+        assert_ne!(bytes("other.png"), bytes("again.png"), "{name}");
+    }
+}
+
+#[test]
+fn defaults_chosen_for_the_user_are_said_in_one_line() {
+    let place = Place::with_ball();
+    let said = |flags: &str| {
+        let line = format!("render ball.nrrd -o a.png {flags} {REFERENCE}");
+        let text = stderr(&place.run(&line));
+        text.lines().filter(|l| l.starts_with("note: ")).count()
+    };
+    assert_eq!(said(""), 1);
+    assert_eq!(said("--iso 70"), 0);
+    assert_eq!(said("--iso otsu"), 1);
+    assert_eq!(said("--mode dvr"), 1);
+    assert_eq!(said("--mode dvr --tf mra"), 0);
+}
+
+#[test]
+fn wrong_usage_is_exit_2() {
+    let place = Place::with_ball();
+    place.write("bad.toml", "mode = 'mip'\nlight = 'lamp'\n");
+    place.write("stray.toml", "mode = 'iso'\n\ncaps-lock = true\n");
+    place.write("nonsense.toml", "mode = 'mip'\ncaps = true\n");
+    for (line, reason) in [
+        ("render ball.nrrd -o a.png --frobnicate", "--frobnicate"),
+        ("render ball.nrrd -o a.png --ssao", "--ssao"),
+        ("frobnicate", "frobnicate"),
+        ("render ball.nrrd", "--output"),
+        ("render -o a.png --device reference", "no volume"),
+        ("render ball.nrrd -o a.tga --device reference", "a.tga"),
+        ("render ball.nrrd -o a.png --size 0x5", "--size"),
+        (
+            "render ball.nrrd -o a.png --tf cta --device reference",
+            "'tf' does not go with",
+        ),
+        (
+            "render ball.nrrd -o a.png --mode mip --caps on",
+            "'caps' does not go with",
+        ),
+        (
+            "render ball.nrrd -o a.png --eye 1,2,3 --view left",
+            "exclude each other",
+        ),
+        (
+            "render ball.nrrd -o a.png --aov depth --device reference",
+            "--aov",
+        ),
+        (
+            "render ball.nrrd -o a.exr --aov colour --device reference",
+            "colour",
+        ),
+        (
+            "render ball.nrrd -o a.png --quality 50 --device reference",
+            "--quality",
+        ),
+        (
+            "render ball.nrrd -o a.jpg --bit-depth 16 --device reference",
+            "--bit-depth",
+        ),
+        (
+            "render ball.nrrd -o a.png --octree-leaf 64 --device reference",
+            "octree-leaf",
+        ),
+        (
+            "render ball.nrrd -o a.png --work-group 8x8 --device reference",
+            "--work-group",
+        ),
+        (
+            "render ball.nrrd -o a.png --scene bad.toml --device reference",
+            "bad.toml:2",
+        ),
+        (
+            "render ball.nrrd -o a.png --scene stray.toml --device reference",
+            "stray.toml:3",
+        ),
+        (
+            "render ball.nrrd -o a.png --scene nonsense.toml",
+            "'caps' does not go with",
+        ),
+        (
+            "render ball.nrrd -o ball.png --stats ball.png --device reference",
+            "a file each",
+        ),
+        ("info", "no volume"),
+        ("info ball.nrrd --mode mip", "--mode"),
+        ("phantom cube -o a.nrrd", "cube"),
+        ("phantom sphere -o a.tif", "a.tif"),
+        ("phantom sphere -o a.nrrd --size 4x4", "--size"),
+        ("phantom sphere -o a.nrrd --type i8", "--type"),
+    ] {
+        let said = place.refused(line, 2);
+        assert!(said.contains(reason), "{line}: {said}");
+    }
+}
+
+#[test]
+fn failed_jobs_are_exit_1() {
+    let place = Place::with_ball();
+    place.write("noise.nrrd", "NRRD0004\nthis is no header\n");
+    for (line, reason) in [
+        ("render none.nrrd -o a.png --device reference", "none.nrrd"),
+        (
+            "render noise.nrrd -o a.png --device reference",
+            "noise.nrrd",
+        ),
+        (
+            "render ball.nrrd -o no/such/a.png --device reference",
+            "no/such",
+        ),
+        (
+            "render ball.nrrd -o a.png --stats no/such/a.json --device reference",
+            "no/such",
+        ),
+        (
+            "render ball.nrrd -o a.png --scene none.toml --device reference",
+            "none.toml",
+        ),
+        (
+            "render ball.nrrd -o a.png --mode dvr --tf none.toml --device reference",
+            "none.toml",
+        ),
+        ("phantom sphere -o no/such/a.nrrd", "no/such"),
+        ("info none.nrrd", "none.nrrd"),
+    ] {
+        let said = place.refused(line, 1);
+        assert!(said.contains(reason), "{line}: {said}");
+    }
+}
+
+#[test]
+fn a_missing_folder_is_said_before_the_volume_is_read() {
+    let place = Place::empty();
+    // The volume is missing too; what is checked first is what is said.
+    let said = place.refused("render none.nrrd -o no/a.png --device reference", 1);
+    assert!(said.contains("no/a.png"), "{said}");
+    let said = place.refused("render none.nrrd -o a.png --device reference", 1);
+    assert!(said.contains("none.nrrd"), "{said}");
+}
+
+#[test]
+fn without_a_driver_all_but_the_device_works() {
+    let place = Place::with_ball();
+    std::fs::create_dir(place.path("vendors")).unwrap();
+    let without = |line: &str| {
+        let mut command = place.command(line);
+        for variable in ["OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"] {
+            command.env(variable, place.path("vendors"));
+        }
+        command.output().unwrap()
+    };
+    for line in [
+        "--help",
+        "info ball.nrrd",
+        "phantom ramp -o ramp.nrrd --size 8",
+        "render ball.nrrd -o a.png --size 16 --device reference",
+    ] {
+        assert!(without(line).status.success(), "{line}");
+    }
+    for line in ["render ball.nrrd -o b.png", "devices"] {
+        let output = without(line);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(3), "{line}: {said}");
+        assert!(
+            said.starts_with("error: ") && said.contains("hint: "),
+            "{said}"
+        );
+        assert!(output.stdout.is_empty());
+        assert!(!place.path("b.png").exists());
+    }
+}
+
+#[test]
+fn info_says_what_the_volume_is() {
+    let place = Place::empty();
+    place.done("phantom ramp -o ramp.nrrd --size 9x5x3 --spacing 0.5,1,2 --type i16");
+    let info: Value = serde_json::from_str(&place.done("info ramp.nrrd --json")).unwrap();
+    assert_eq!(info["dims"], serde_json::json!([9, 5, 3]));
+    assert_eq!(info["spacing_mm"], serde_json::json!([0.5, 1.0, 2.0]));
+    assert_eq!(info["type"], "i16");
+    assert_eq!(info["size_mm"], serde_json::json!([4.0, 4.0, 4.0]));
+    assert_eq!(info["bytes"], 9 * 5 * 3 * 2);
+    assert_eq!(info["non_finite"], 0);
+    let share = info["octree"]["share_of_volume"].as_f64().unwrap();
+    let bytes = info["octree"]["bytes"].as_f64().unwrap();
+    assert!((share - bytes / 270.0).abs() < 1e-9);
+    let text = place.done("info ramp.nrrd");
+    for word in [
+        "9x5x3 i16",
+        "0.5",
+        "suggested iso",
+        "otsu",
+        "octree",
+        "% of the volume",
+    ] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    // The control: another leaf, another tree.
+    let finer = place.done("info ramp.nrrd --json --octree-leaf 4");
+    let finer: Value = serde_json::from_str(&finer).unwrap();
+    assert_ne!(finer["octree"], info["octree"]);
+}
+
+#[test]
+fn phantoms_are_seeded_and_vessels_bring_their_tree() {
+    let place = Place::empty();
+    place.done("phantom vessels -o a.nrrd --size 24 --seed 3");
+    place.done("phantom vessels -o b.nrrd --size 24 --seed 3");
+    place.done("phantom vessels -o c.nrrd --size 24 --seed 4");
+    let bytes = |name: &str| std::fs::read(place.path(name)).unwrap();
+    assert_eq!(bytes("a.nrrd"), bytes("b.nrrd"));
+    assert_ne!(bytes("a.nrrd"), bytes("c.nrrd"));
+    let tree = place.json("a.tree.json");
+    assert!(!tree["segments"].as_array().unwrap().is_empty());
+    assert_eq!(tree["seed"], 3);
+    assert!(place.done("phantom sphere -o s.nrrd --size 8").is_empty());
+    assert!(!place.path("s.tree.json").exists());
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let place = Place::with_ball();
+    for line in ["info ball.nrrd", "info ball.nrrd --json", "render --help"] {
+        let mut child = place
+            .command(line)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Closed before anything is written, or at the latest before it is read.
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        assert_eq!(stderr(&output), "", "{line}");
+    }
+    // The control: a full disk is one.
+    if Path::new("/dev/full").exists() {
+        let full = std::fs::File::create("/dev/full").unwrap();
+        let output = place
+            .command("info ball.nrrd")
+            .stdout(full)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(stderr(&output).starts_with("error: "));
+    }
+}
+
+#[test]
+fn a_volume_is_never_written_over() {
+    let place = Place::with_ball();
+    let before = std::fs::read(place.path("ball.nrrd")).unwrap();
+    let said = place.refused(
+        "render ball.nrrd -o a.png --stats ball.nrrd --device reference",
+        2,
+    );
+    assert!(said.contains("ball.nrrd"), "{said}");
+    assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
+}

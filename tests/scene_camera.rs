@@ -1,0 +1,151 @@
+//! Camera options against cameras worked out by hand.
+
+use angioray::extent::Range;
+use angioray::scene::{Camera, Lens, SceneOptions, Subject};
+use clap::Parser;
+use glam::DVec3;
+
+/// A ball of radius 10 mm about (1, 2, 3).
+const SUBJECT: Subject = Subject {
+    center_world: DVec3::new(1.0, 2.0, 3.0),
+    radius_mm: 10.0,
+    range: Range { min: 0.0, max: 1.0 },
+    otsu: 0.5,
+    suggested_iso: 0.5,
+};
+
+#[derive(Parser)]
+struct Flags {
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+fn camera(line: &[&str]) -> Camera {
+    resolved(line).scene.camera
+}
+
+fn resolved(line: &[&str]) -> angioray::scene::Resolved {
+    let words = std::iter::once("angioray").chain(line.iter().copied());
+    let flags = Flags::try_parse_from(words).unwrap_or_else(|e| panic!("{line:?}: {e}"));
+    let resolved = flags.options.resolve(&SUBJECT);
+    resolved.unwrap_or_else(|e| panic!("{line:?}: {e}"))
+}
+
+/// Whether the eye lies in this direction from the volume's centre, with this up.
+fn eye_is(line: &[&str], toward: [f64; 3], up: [f64; 3]) -> bool {
+    let camera = camera(line);
+    let toward_eye = (camera.eye_world() - SUBJECT.center_world).normalize();
+    toward_eye.distance(toward.into()) < 1e-9 && camera.up().distance(up.into()) < 1e-9
+}
+
+#[test]
+fn named_views_look_from_the_named_side() {
+    let z = [0.0, 0.0, 1.0];
+    for (view, toward, up) in [
+        ("anterior", [0.0, -1.0, 0.0], z),
+        ("posterior", [0.0, 1.0, 0.0], z),
+        ("left", [1.0, 0.0, 0.0], z),
+        ("right", [-1.0, 0.0, 0.0], z),
+        ("superior", [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]),
+        ("inferior", [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]),
+    ] {
+        assert!(eye_is(&["--view", view], toward, up), "{view}");
+        // The control: from the opposite side it is false.
+        assert!(!eye_is(&["--view", view], toward.map(|c| -c), up), "{view}");
+    }
+    assert!(eye_is(&[], [0.0, -1.0, 0.0], z), "anterior is the default");
+}
+
+#[test]
+fn azimuth_goes_to_the_left_and_elevation_to_the_head() {
+    let (sin20, cos20) = 20f64.to_radians().sin_cos();
+    let (sin30, cos30) = (0.5, 3f64.sqrt() / 2.0);
+    let eye = [sin30 * cos20, -cos30 * cos20, sin20];
+    let up = [-sin30 * sin20, cos30 * sin20, cos20];
+    assert!(eye_is(&["--azimuth", "30", "--elevation", "20"], eye, up));
+    for said in [
+        "LAO 30 CRA 20",
+        "cra 20 lao 30",
+        "LAO30 CRAN20",
+        "LAO 30°, CRA 20°",
+    ] {
+        assert!(eye_is(&["--carm", said], eye, up), "{said}");
+    }
+    let opposite = [-eye[0], eye[1], -eye[2]];
+    let opposite_up = [-sin30 * sin20, -cos30 * sin20, cos20];
+    assert!(eye_is(&["--carm", "RAO 30 CAU 20"], opposite, opposite_up));
+    // The control.
+    assert!(!eye_is(&["--carm", "RAO 30 CRA 20"], eye, up));
+    for wrong in [
+        "LAO",
+        "30",
+        "LAO 30 RAO 30",
+        "LAO -30",
+        "XYZ 3",
+        "",
+        "LAO 200",
+    ] {
+        let line = ["angioray", "--carm", wrong];
+        assert!(Flags::try_parse_from(line).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn over_the_pole_nothing_breaks() {
+    let (above, back) = ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
+    assert!(eye_is(&["--elevation", "90"], above, back));
+    assert!(!eye_is(&["--elevation", "89"], above, back));
+    assert!(eye_is(&["--elevation", "180"], back, [0.0, 0.0, -1.0]));
+    assert!(eye_is(&["--roll", "90"], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]));
+}
+
+/// How far the bounding sphere's silhouette reaches, as a share of half the picture's smaller side.
+fn reach(line: &[&str]) -> f64 {
+    let scene = resolved(line).scene;
+    let smaller = scene.size.aspect().min(1.0);
+    let distance = scene.camera.eye_world().distance(SUBJECT.center_world);
+    match scene.camera.lens() {
+        Lens::Perspective { fov_deg } => {
+            let silhouette = (SUBJECT.radius_mm / distance).asin().tan();
+            silhouette / ((fov_deg.to_radians() / 2.0).tan() * smaller)
+        }
+        Lens::Orthographic { height_mm } => SUBJECT.radius_mm / (height_mm / 2.0 * smaller),
+    }
+}
+
+#[test]
+fn the_bounding_sphere_fits_the_smaller_side_at_zoom_1() {
+    for line in [
+        &["--size", "64x64"][..],
+        &["--size", "64x128"],
+        &["--size", "128x64", "--fov", "90"],
+        &["--fov", "0.5", "--view", "left"],
+    ] {
+        assert!(
+            (reach(line) - 1.0).abs() < 1e-9,
+            "{line:?}: {}",
+            reach(line)
+        );
+    }
+    assert!((reach(&["--zoom", "2"]) - 2.0).abs() < 1e-9);
+    assert!((reach(&["--ortho", "40"]) - 0.5).abs() < 1e-9);
+    assert!((reach(&["--ortho", "40", "--zoom", "2"]) - 1.0).abs() < 1e-9);
+    // The control.
+    assert!((reach(&["--zoom", "1.01"]) - 1.0).abs() > 1e-3);
+}
+
+#[test]
+fn an_eye_is_taken_as_it_is() {
+    let line = [
+        "--eye", "-5,6,-7", "--target", "1,2,3", "--up", "1,0,0", "--fov", "40",
+    ];
+    let c = camera(&line);
+    assert_eq!(c.eye_world(), DVec3::new(-5.0, 6.0, -7.0));
+    let forward = DVec3::new(6.0, -4.0, 10.0).normalize();
+    assert!(c.forward().distance(forward) < 1e-12);
+    assert!(c.right().distance(forward.cross(DVec3::X).normalize()) < 1e-12);
+    assert_eq!(c.lens(), Lens::Perspective { fov_deg: 40.0 });
+    // Straight down without an up: the patient's front is up.
+    let down = camera(&["--eye", "1,2,50"]);
+    assert!(down.up().distance(DVec3::NEG_Y) < 1e-12);
+}

@@ -1,0 +1,300 @@
+//! Scene options: flags and scene files, alone and together, to a scene and back.
+
+use angioray::extent::{ImageSize, Range};
+use angioray::scene::{
+    Lens, Picture, Projection, Resolved, SceneOptions, Subject, Threshold, TransferChoice,
+};
+use clap::Parser;
+use glam::DVec3;
+
+const SUBJECT: Subject = Subject {
+    center_world: DVec3::new(1.0, 2.0, 3.0),
+    radius_mm: 10.0,
+    range: Range {
+        min: -100.0,
+        max: 300.0,
+    },
+    otsu: 42.5,
+    suggested_iso: 120.0,
+};
+
+#[derive(Parser)]
+struct Flags {
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+fn flags(line: &[&str]) -> SceneOptions {
+    let words = std::iter::once("angioray").chain(line.iter().copied());
+    match Flags::try_parse_from(words) {
+        Ok(flags) => flags.options,
+        Err(error) => panic!("{line:?}: {error}"),
+    }
+}
+
+fn file(text: &str) -> SceneOptions {
+    SceneOptions::parse(text, "scene.toml").unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn refusal(text: &str) -> String {
+    match SceneOptions::parse(text, "scene.toml").and_then(SceneOptions::checked) {
+        Ok(_) => panic!("accepted: {text}"),
+        Err(error) => {
+            assert_eq!(error.exit_code(), 2, "{text}");
+            error.to_string()
+        }
+    }
+}
+
+fn resolved(options: &SceneOptions) -> Resolved {
+    options
+        .resolve(&SUBJECT)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn thresholds_are_values_shares_or_otsu() {
+    let iso = |said: &str| match resolved(&flags(&["--iso", said])).scene.picture {
+        Picture::Surface { iso, .. } => iso,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(iso("-20"), -20.0);
+    assert_eq!(iso("25%"), 0.0);
+    assert_eq!(iso("otsu"), 42.5);
+    let default = resolved(&flags(&[]));
+    assert!(matches!(default.scene.picture, Picture::Surface { iso, .. } if iso == 120.0));
+    assert!(default.notes[0].starts_with("iso = 120"));
+    assert!(resolved(&flags(&["--iso", "otsu"])).notes[0].contains("42.5"));
+    assert!(resolved(&flags(&["--iso", "301"])).notes[0].contains("outside"));
+    assert!(resolved(&flags(&["--iso", "30"])).notes.is_empty());
+    let lmip = resolved(&flags(&["--mode", "lmip", "--lmip-threshold", "50%"]));
+    let Picture::Projection { of, .. } = lmip.scene.picture else {
+        panic!("lmip is a projection")
+    };
+    assert_eq!(of, Projection::LocalMaximum { threshold: 100.0 });
+}
+
+#[test]
+fn a_projection_shows_the_whole_range_unless_told() {
+    let window = |line: &[&str]| match resolved(&flags(line)).scene.picture {
+        Picture::Projection { window, .. } => (window.low(), window.high()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(window(&["--mode", "mip"]), (-100.0, 300.0));
+    let given = ["--mode", "minip", "--window", "-50,200"];
+    assert_eq!(window(&given), (-50.0, 200.0));
+    let computed = ["--mode", "mean", "--window", "25%,otsu"];
+    assert_eq!(window(&computed), (0.0, 42.5));
+    let empty = flags(&["--mode", "mip", "--window", "200,100"]).resolve(&SUBJECT);
+    assert_eq!(empty.map_err(|e| e.exit_code()), Err(2));
+    let constant = Subject {
+        range: Range { min: 7.0, max: 7.0 },
+        ..SUBJECT
+    };
+    assert!(flags(&["--mode", "mip"]).resolve(&constant).is_ok());
+}
+
+/// Scenes of every kind, far from the defaults.
+#[rustfmt::skip]
+const SCENES: [&[&str]; 7] = [
+    &["head.nrrd"],
+    &[
+        "a/b,c.nrrd", "--iso", "33.333333333333336", "--caps", "off", "--refine", "newton:7",
+        "--color", "#3366cc", "--shading", "blinn-phong", "--light", "-1,2,0.1", "--ambient", "0.3",
+        "--diffuse", "0.6", "--specular", "0", "--shininess", "5", "--eye", "-1e-3,7.25,1e5",
+        "--target", "0.1,0.2,0.30000000000000004", "--up", "1,1,1", "--ortho", "77.7", "--size",
+        "31x17", "--step", "0.3", "--filter", "nearest", "--traverse", "kd-restart", "--skip",
+        "off", "--background", "0.1,0.2,0.3", "--brightness", "-0.25", "--contrast", "1.5",
+        "--gamma", "2.2", "--smooth", "0.7", "--octree-leaf", "16", "--frame", "3",
+        "--non-finite", "refuse", "--raw-size", "7x8x9", "--raw-type", "i16be", "--raw-spacing",
+        "0.5", "--raw-offset", "128",
+    ],
+    &["--mode", "mip", "--carm", "RAO 33.3 CAU 12.1", "--zoom", "1.7", "--roll", "11"],
+    &["--mode", "lmip", "--lmip-threshold", "40%", "--window", "otsu,90%"],
+    &["--mode", "minip", "--view", "superior"],
+    &["--mode", "dvr"],
+    &["--mode", "dvr", "--tf", "cta", "--shading", "phong", "--termination", "0.95"],
+];
+
+#[test]
+fn resolved_options_read_back_as_a_scene_file_make_the_same_scene() {
+    for line in SCENES {
+        let first = resolved(&flags(line));
+        let text = first.options.to_toml().unwrap_or_else(|e| panic!("{e}"));
+        let again = resolved(&file(&text));
+        assert_eq!(again.scene, first.scene, "{text}");
+        assert_eq!(again.options, first.options, "{text}");
+        // The control: one digit more is another scene.
+        let other = text.replace("contrast = 1", "contrast = 11");
+        assert_ne!(resolved(&file(&other)).scene, first.scene, "{text}");
+    }
+}
+
+#[test]
+fn scene_files_take_strings_numbers_and_lists() {
+    let as_text = file(
+        "size = '64x32'\niso = '50'\neye = '1,2,3.5'\ncaps = 'off'\nbackground = '1,0,0.5'\nraw-size = '4x5x6'",
+    );
+    let as_values = file(
+        "size = [64, 32]\niso = 50\neye = [1, 2, 3.5]\ncaps = false\nbackground = [1, 0, 0.5]\nraw-size = [4, 5, 6]",
+    );
+    assert_eq!(as_text, as_values);
+    assert_eq!(as_text.camera.size, ImageSize::new(64, 32).ok());
+    assert_eq!(file("size = 64").camera.size, ImageSize::new(64, 64).ok());
+    assert_eq!(file("iso = '50%'").picture.iso, Some(Threshold::Share(0.5)));
+    assert_ne!(file("iso = 50.5"), file("iso = 50"));
+    let inline = file("mode = 'dvr'\n[tf]\npoints = [[0, 0, 0, 0, 0], [1, 1, 1, 1, 0.5]]");
+    assert!(matches!(
+        inline.picture.tf,
+        Some(TransferChoice::Written(_))
+    ));
+}
+
+#[test]
+fn files_named_in_a_scene_file_are_relative_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, "volume = 'head.nrrd'\nmode = 'dvr'\ntf = 'own.toml'").unwrap();
+    let tf = "points = [[5, 1, 1, 1, 0.5]]";
+    std::fs::write(folder.path().join("own.toml"), tf).unwrap();
+    let options = SceneOptions::read(&path).unwrap().checked().unwrap();
+    let volume = options.volume.volume.unwrap().0;
+    assert_eq!(volume, folder.path().join("head.nrrd"));
+    let Some(TransferChoice::Written(own)) = options.picture.tf else {
+        panic!("the transfer function was not read")
+    };
+    assert_eq!(own.points[0][0], 5.0);
+    // The control: a preset's name is no file.
+    std::fs::write(&path, "mode = 'dvr'\ntf = 'mra'").unwrap();
+    assert!(SceneOptions::read(&path).unwrap().checked().is_ok());
+    std::fs::write(&path, "mode = 'dvr'\ntf = 'none.toml'").unwrap();
+    assert!(SceneOptions::read(&path).unwrap().checked().is_err());
+}
+
+#[test]
+fn a_flag_wins_over_the_file() {
+    let scene = "mode = 'iso'\niso = 10\ncaps = false\nstep = 0.25\nview = 'left'\nfov = 50\n";
+    let merged = flags(&["--iso", "20", "--view", "right"]).over(file(scene));
+    assert_eq!(merged.picture.iso, Some(Threshold::Value(20.0)));
+    assert_eq!(merged.sampling.step, file(scene).sampling.step);
+    assert!(resolved(&merged).scene.camera.eye_world().x < 0.0);
+    // What a flag rules out in the file goes with it.
+    let mip = flags(&["--mode", "mip"]).over(file(scene));
+    assert_eq!(resolved(&mip).scene.picture.mode(), "mip");
+    let eye = flags(&["--eye", "9,9,9"]).over(file(scene));
+    assert_eq!(resolved(&eye).scene.camera.eye_world(), DVec3::splat(9.0));
+    let ortho = flags(&["--ortho", "5"]).over(file(scene));
+    let lens = resolved(&ortho).scene.camera.lens();
+    assert_eq!(lens, Lens::Orthographic { height_mm: 5.0 });
+    for line in SCENES {
+        let whole = resolved(&flags(line)).options;
+        for mode in ["iso", "mip", "lmip", "minip", "mean", "dvr"] {
+            let other = flags(&["--mode", mode, "--view", "left"]).over(whole.clone());
+            assert_eq!(resolved(&other).scene.picture.mode(), mode);
+        }
+    }
+    // The control: within one source the same is nonsense.
+    assert!(file("mode = 'mip'\niso = 10").checked().is_err());
+}
+
+#[test]
+fn nonsense_is_refused_with_a_reason() {
+    for (text, reason) in [
+        (
+            "mode = 'iso'\ntf = 'cta'",
+            "'tf' does not go with mode 'iso'",
+        ),
+        ("tf = 'cta'", "'tf' does not go with mode 'iso'"),
+        (
+            "mode = 'mip'\ncaps = true",
+            "'caps' does not go with mode 'mip'",
+        ),
+        (
+            "mode = 'mip'\nlmip-threshold = 4",
+            "does not go with mode 'mip'",
+        ),
+        ("mode = 'mean'\nshading = 'phong'", "no surface to light"),
+        ("mode = 'dvr'\nwindow = '1,2'", "'window' does not go with"),
+        ("mode = 'dvr'\nlight = 'headlight'", "without shading"),
+        ("shading = 'none'\nspecular = 0.5", "without shading"),
+        ("fov = 30\northo = 100", "exclude each other"),
+        ("eye = [1, 2, 3]\nview = 'left'", "exclude each other"),
+        ("eye = [1, 2, 3]\nzoom = 2", "exclude each other"),
+        ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
+        ("up = [0, 1, 0]", "'up' goes with 'eye'"),
+    ] {
+        let said = refusal(text);
+        assert!(said.contains(reason), "{text}: {said}");
+    }
+    // The controls: the same keys where they mean something.
+    for text in [
+        "mode = 'dvr'\ntf = 'cta'",
+        "mode = 'iso'\ncaps = true",
+        "mode = 'lmip'\nlmip-threshold = 4",
+        "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
+        "carm = 'LAO 10'\nview = 'anterior'",
+    ] {
+        assert!(file(text).checked().is_ok(), "{text}");
+    }
+}
+
+#[test]
+fn a_wrong_scene_file_is_refused_with_its_line() {
+    let inline_tf = "mode = 'dvr'\n[tf]\npoints = [\n [0, 0, 0, 0, 0],\n [1, 0, 0, 0, 2],\n]";
+    for (text, place) in [
+        ("mode = 'mip'\n\nwindow = 'x'", "scene.toml:3: "),
+        (
+            "size = 9\nmood = 'dark'",
+            "scene.toml:2: 'mood' is no option",
+        ),
+        ("raw_size = '4x4x4'", "scene.toml:1: 'raw_size'"),
+        ("step = 0", "scene.toml:1: "),
+        ("fov = 180", "scene.toml:1: "),
+        ("a = = 3", "scene.toml:1: "),
+        ("\n\niso = [1, 2]", "scene.toml:3: "),
+        ("\ntf = 7", "scene.toml:2: "),
+        ("eye = [1, nan, 3]", "scene.toml:1: "),
+        ("background = [0, 0, 2]", "scene.toml:1: "),
+        (inline_tf, "scene.toml:5: "),
+    ] {
+        let said = refusal(text);
+        assert!(said.starts_with(place), "{text}: {said}");
+        assert!(!said.contains('\n'), "{said}");
+    }
+}
+
+#[test]
+fn every_number_with_a_domain_refuses_what_is_outside() {
+    for (flag, inside, outside) in [
+        ("iso", "50%", ["101%", "nan", "1e999"]),
+        ("fov", "30", ["0", "180", "nan"]),
+        ("ortho", "1", ["0", "-1", "inf"]),
+        ("zoom", "3", ["0", "-1", "1e9"]),
+        ("step", "1", ["0", "1e-9", "101"]),
+        ("termination", "1", ["0", "1.1", "nan"]),
+        ("gamma", "2.2", ["0", "-1", "11"]),
+        ("contrast", "0", ["-1", "101", "x"]),
+        ("brightness", "-1", ["-2", "2", ""]),
+        ("shininess", "1", ["0", "-3", "1e6"]),
+        ("smooth", "0", ["-1", "nan", "1e9"]),
+        ("azimuth", "-360", ["nan", "inf", "1e9"]),
+        ("light", "0,-1,0", ["0,0,0", "1,2", "lamp"]),
+        ("raw-spacing", "0.5", ["0", "1,2", "-1,1,1"]),
+        ("color", "#A0b1c2", ["#12345", "1,1", "#gggggg"]),
+        ("size", "640x480", ["0", "4x", "70000x70000"]),
+        ("mode", "minip", ["MIP", "", "xray"]),
+        ("refine", "illinois:3", ["newton:0", "secant", "none:3"]),
+        ("window", "otsu,90%", ["5", "a,b", ""]),
+    ] {
+        let accepted = |value: &str| {
+            let flag_takes = Flags::try_parse_from(["angioray", &format!("--{flag}={value}")]);
+            let key_takes = SceneOptions::parse(&format!("{flag} = '{value}'"), "scene.toml");
+            assert_eq!(flag_takes.is_ok(), key_takes.is_ok(), "{flag} {value}");
+            flag_takes.is_ok()
+        };
+        assert!(accepted(inside), "{flag} {inside}");
+        for value in outside {
+            assert!(!accepted(value), "{flag} {value}");
+        }
+    }
+}

@@ -108,7 +108,6 @@ fn judge_on(device: &Device, name: &str, volume: &Volume, iso: f64) {
         termination: 0.999,
     };
     let (truth, frame) = judge.frames(&scene);
-    for st in [0.25, 0.125, 0.0625, 0.03125] {
         scene.sampling.step_voxels = st;
         let f = judge.device(&scene);
         let e = color_error(&truth, &f).unwrap();

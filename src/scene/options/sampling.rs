@@ -26,6 +26,12 @@ group! {
         /// Skip empty space; never changes the picture [default: on]
         #[arg(long, value_name = "on|off")]
         skip: Switch,
+
+        /// Look between two samples where the field's slopes along the ray point at a peak between
+        /// them, for the surface in iso and the extremum in mip, minip and lmip; off: fixed steps
+        /// and nothing else [default: on]
+        #[arg(long, value_name = "on|off")]
+        probe: Switch,
     }
 }
 
@@ -41,6 +47,7 @@ impl SamplingOptions {
             filter: self.filter.or(Some(default.filter)),
             traverse: self.traverse.or(Some(default.traverse)),
             skip: self.skip.or(Some(default.skip.into())),
+            probe: self.probe.or(Some(default.probe.into())),
         })
     }
 
@@ -51,6 +58,7 @@ impl SamplingOptions {
             filter: self.filter.unwrap_or(default.filter),
             traverse: self.traverse.unwrap_or(default.traverse),
             skip: self.skip.map_or(default.skip, Switch::is_on),
+            probe: self.probe.map_or(default.probe, Switch::is_on),
         }
     }
 }

@@ -108,11 +108,6 @@ fn judge_on(device: &Device, name: &str, volume: &Volume, iso: f64) {
         termination: 0.999,
     };
     let (truth, frame) = judge.frames(&scene);
-        scene.sampling.step_voxels = st;
-        let f = judge.device(&scene);
-        let e = color_error(&truth, &f).unwrap();
-        println!("DVR {name} {st} {:.3}", e.max * 255.0);
-    }
     let dvr = color_error(&truth, &frame).unwrap();
     scene.sampling.step_voxels = 8.0;
     let coarse = color_error(&truth, &judge.device(&scene)).unwrap();

@@ -34,6 +34,14 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/tone_curve.cl",
     "pass/window_value.cl",
     "test/abi.cl",
+    "test/absorption.cl",
+    "test/color.cl",
+    "test/field.cl",
+    "test/interval.cl",
+    "test/peak.cl",
+    "test/reflection.cl",
+    "test/spans.cl",
+    "test/transfer.cl",
 ];
 
 /// The paths of all kernel files below `kernels/`.

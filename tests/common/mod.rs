@@ -16,12 +16,17 @@ pub fn device() -> Option<Device> {
     match Device::select(&choice) {
         Ok(device) => Some(device),
         Err(error) => {
-            let required = std::env::var("REQUIRE_OPENCL").is_ok_and(|v| v == "1");
-            assert!(!required, "REQUIRE_OPENCL=1, but {error}");
-            eprintln!("skipped: {error}");
+            skip(&error.to_string());
             None
         }
     }
+}
+
+/// Says why a test cannot be made here; fails it under `REQUIRE_OPENCL=1`.
+pub fn skip(reason: &str) {
+    let required = std::env::var("REQUIRE_OPENCL").is_ok_and(|v| v == "1");
+    assert!(!required, "REQUIRE_OPENCL=1, but {reason}");
+    eprintln!("skipped: {reason}");
 }
 
 /// A volume of unit spacing from a function of the voxel.

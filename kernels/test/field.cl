@@ -1,0 +1,18 @@
+// The field at each point of a volume of `size` voxels, and its slope along each direction.
+#include "lib/field.clh"
+
+kernel void field(uint count, uint4 size, const global VOXEL *voxels, const global float4 *points,
+                  const global float4 *dirs, global float *values, global float2 *with_slope)
+{
+    uint i = get_global_id(0);
+    if (i >= count || get_global_id(1) != 0)
+        return;
+    VolumeGrid volume;
+    volume.nx = size.x;
+    volume.ny = size.y;
+    volume.nz = size.z;
+    float slope;
+    float value = field_slope_at(voxels, volume, points[i].xyz, dirs[i].xyz, &slope);
+    values[i] = field_at(voxels, volume, points[i].xyz);
+    with_slope[i] = (float2)(value, slope);
+}

@@ -1,0 +1,25 @@
+// The peak between two samples of each ray: rays hold the ends' t, the sign and the goal.
+#include "lib/peak.clh"
+
+kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 start, float4 dir, float length_mm, uint first,
+                 const global float4 *rays, global float4 *peaks, global uint *found)
+{
+    uint i = get_global_id(0);
+    if (i >= count || get_global_id(1) != 0)
+        return;
+    VolumeGrid volume;
+    volume.nx = size.x;
+    volume.ny = size.y;
+    volume.nz = size.z;
+    Lattice lattice;
+    lattice.start = start.xyz;
+    lattice.dir = dir.xyz;
+    lattice.length_mm = length_mm;
+    float sign = rays[i].z;
+    RayPoint a = ray_point(voxels, volume, lattice, sign, 0.0f, rays[i].x);
+    RayPoint b = ray_point(voxels, volume, lattice, sign, 0.0f, rays[i].y);
+    RayPoint best = {0.0f, 0.0f, 0.0f};
+    uint samples = 0u;
+    found[i] = peak_between(voxels, volume, lattice, sign, 0.0f, rays[i].w, first != 0u, a, b, &best, &samples);
+    peaks[i] = (float4)(best.t, best.height, best.slope, (float)samples);
+}

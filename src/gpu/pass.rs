@@ -130,13 +130,15 @@ pub struct Launch<'a> {
     failed: Option<Error>,
 }
 
-impl Launch<'_> {
-    pub fn input(self, buffer: &AnyBuffer) -> Self {
+impl<'a> Launch<'a> {
+    /// The buffer is borrowed until the launch is made: OpenCL does not keep it alive.
+    pub fn input(self, buffer: &'a AnyBuffer) -> Self {
         let type_name = format!("{}*", buffer.cl_name());
         self.give(&type_name, ArgVal::mem(buffer.mem()))
     }
 
-    pub fn output<T: Element>(self, buffer: &mut Buffer<T>) -> Self {
+    /// As [`Launch::input`], for a buffer that the pass writes.
+    pub fn output<T: Element>(self, buffer: &'a mut Buffer<T>) -> Self {
         self.input(buffer)
     }
 

@@ -123,7 +123,7 @@ impl Counters {
     }
 
     /// Gives them, when they are wanted, as a cast's last arguments.
-    fn give<'a>(counters: Option<&mut Self>, launch: Launch<'a>) -> Launch<'a> {
+    fn give<'a>(counters: Option<&'a mut Self>, launch: Launch<'a>) -> Launch<'a> {
         match counters {
             Some(counters) => launch
                 .output(&mut counters.steps)

@@ -442,3 +442,67 @@ fn a_volume_is_never_written_over() {
     assert!(said.contains("ball.nrrd"), "{said}");
     assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
 }
+
+#[test]
+fn every_flag_is_a_key_of_the_command_s_scene_file() {
+    let place = Place::empty();
+    let command = |name: &str| {
+        let help = place.done(&format!("{name} --help"));
+        let flag = |line: &str| {
+            let (_, after) = line.trim_start().split_at_checked(0)?;
+            let after = after.strip_prefix("-o, ").unwrap_or(after);
+            let name = after.strip_prefix("--")?;
+            let end = name.find(|c: char| !(c.is_ascii_lowercase() || c == '-'));
+            Some(name[..end.unwrap_or(name.len())].to_owned())
+        };
+        let flags: Vec<String> = help.lines().filter_map(flag).collect();
+        assert!(flags.contains(&"scene".to_owned()), "{name}: {flags:?}");
+        flags
+    };
+    let mut keys: Vec<String> = ["render", "info", "phantom", "devices"]
+        .into_iter()
+        .flat_map(command)
+        .filter(|flag| flag != "scene")
+        .collect();
+    assert!(keys.len() > 40, "{keys:?}");
+    keys.extend(["volume".to_owned(), "kind".to_owned()]);
+    for key in keys {
+        // Of a wrong type for every key: accepted as a key, refused as a value by its command.
+        place.write("keys.toml", &format!("\n{key} = {{ a = 1 }}\n"));
+        let refusals: Vec<String> = ["render", "info", "phantom"]
+            .into_iter()
+            .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
+            .collect();
+        let at = |said: &String| said.starts_with("error: keys.toml:2: ");
+        assert!(refusals.iter().any(at), "{key}: {refusals:?}");
+        let unknown = |said: &String| said.contains("no option of a scene");
+        assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
+    }
+    // The controls: keys that no command has.
+    for key in ["scene", "help", "phantom", "quad"] {
+        place.write("keys.toml", &format!("\n{key} = 1\n"));
+        for command in ["render", "info", "phantom", "devices"] {
+            let said = place.refused(&format!("{command} --scene keys.toml"), 2);
+            assert!(said.starts_with("error: keys.toml:2: "), "{said}");
+        }
+    }
+}
+
+#[test]
+fn one_scene_file_makes_a_phantom_looks_at_it_and_renders_it() {
+    let place = Place::empty();
+    std::fs::create_dir(place.path("scenes")).unwrap();
+    // Files are relative to the scene file.
+    place.write(
+        "scenes/make.toml",
+        "kind = 'slab'\noutput = '../slab.nrrd'\nsize = [12, 10, 8]\nspacing = 0.5\ntype = 'f32'\n\
+         thickness = 2\naxis = 'x'\nseed = 3\nnoise = 0.01\ngzip = true\n",
+    );
+    place.done("phantom --scene scenes/make.toml");
+    let info: Value = serde_json::from_str(&place.done("info slab.nrrd --json")).unwrap();
+    assert_eq!(info["dims"], serde_json::json!([12, 10, 8]));
+    assert_eq!(info["type"], "f32");
+    // A flag wins, off over on too.
+    place.done("phantom ramp --scene scenes/make.toml -o ramp.nrrd --thickness 3 --size 6")
+        .is_empty();
+}

@@ -2,7 +2,7 @@
 
 use angioray::extent::{ImageSize, Range};
 use angioray::scene::{
-    Lens, Picture, Projection, Resolved, SceneOptions, Subject, Threshold, TransferChoice,
+    Lens, Picture, Projection, Resolved, SceneFile, SceneOptions, Subject, Threshold, TransferChoice,
 };
 use clap::Parser;
 use glam::DVec3;
@@ -157,7 +157,8 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
     std::fs::write(&path, "volume = 'head.nrrd'\nmode = 'dvr'\ntf = 'own.toml'").unwrap();
     let tf = "points = [[5, 1, 1, 1, 0.5]]";
     std::fs::write(folder.path().join("own.toml"), tf).unwrap();
-    let options = SceneOptions::read(&path).unwrap().checked().unwrap();
+    let read = || SceneOptions::of_file(&SceneFile::read(&path).unwrap()).unwrap();
+    let options = read().checked().unwrap();
     let volume = options.volume.volume.unwrap().0;
     assert_eq!(volume, folder.path().join("head.nrrd"));
     let Some(TransferChoice::Written(own)) = options.picture.tf else {
@@ -166,9 +167,9 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
     assert_eq!(own.points[0][0], 5.0);
     // The control: a preset's name is no file.
     std::fs::write(&path, "mode = 'dvr'\ntf = 'mra'").unwrap();
-    assert!(SceneOptions::read(&path).unwrap().checked().is_ok());
+    assert!(read().checked().is_ok());
     std::fs::write(&path, "mode = 'dvr'\ntf = 'none.toml'").unwrap();
-    assert!(SceneOptions::read(&path).unwrap().checked().is_err());
+    assert!(read().checked().is_err());
 }
 
 #[test]

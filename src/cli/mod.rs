@@ -1,12 +1,14 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod devices;
+mod engine;
 mod info;
 mod load;
 mod outputs;
 mod phantom;
 mod progress;
 mod render;
+mod scene;
 mod stats;
 mod terminal;
 

@@ -14,6 +14,7 @@ use crate::scene::{Camera, Lens};
 
 group! {
     /// Where the eye is and how it looks. Lengths in mm, world space LPS.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Camera")]
     pub struct CameraOptions {
         /// Width and height of the picture in pixels [default: 512x512]

@@ -19,6 +19,7 @@ use crate::scene::{Refine, TransferFile};
 
 group! {
     /// What is shown.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Picture")]
     pub struct PictureOptions {
         /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission

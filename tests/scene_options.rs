@@ -2,7 +2,8 @@
 
 use angioray::extent::{ImageSize, Range};
 use angioray::scene::{
-    Lens, Picture, Projection, Resolved, SceneFile, SceneOptions, Subject, Threshold, TransferChoice,
+    Lens, Picture, Projection, Resolved, SceneFile, SceneOptions, Subject, Threshold,
+    TransferChoice,
 };
 use clap::Parser;
 use glam::DVec3;

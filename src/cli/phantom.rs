@@ -109,8 +109,15 @@ impl PhantomArguments {
         let file = self.scene.open()?;
         let mut from_file = file.group::<PhantomOptions>()?;
         from_file.output = from_file.output.map(|path| file.named_here(path));
+        // Another kind than the file's has another shape.
+        let shape = match self.phantom.kind {
+            Some(kind) if from_file.kind.is_some_and(|other| other != kind) => {
+                ShapeOptions::default()
+            }
+            _ => file.group()?,
+        };
         let asked = self.phantom.over(from_file);
-        let shape = self.shape.over(file.group()?);
+        let shape = self.shape.over(shape);
 
         let Some(kind) = asked.kind else {
             let kinds = PhantomKind::ALL.map(PhantomKind::name).join(", ");

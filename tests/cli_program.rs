@@ -226,6 +226,7 @@ fn failed_jobs_are_exit_1() {
         ),
         ("phantom sphere -o no/such/a.nrrd", "no/such"),
         ("info none.nrrd", "none.nrrd"),
+        ("render none.nrrd -o a.png/ --device reference", "a.png/"),
     ] {
         let said = place.refused(line, 1);
         assert!(said.contains(reason), "{line}: {said}");
@@ -360,6 +361,20 @@ fn a_volume_is_never_written_over() {
     );
     assert!(said.contains("ball.nrrd"), "{said}");
     assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
+    // Nor what else is read, nor one output by the other, by whatever way.
+    place.write("own.toml", "points = [[1, 1, 1, 1, 0.5]]\n");
+    std::fs::create_dir(place.path("sub")).unwrap();
+    for line in [
+        "render ball.nrrd -o a.png --stats sub/../own.toml --mode dvr --tf own.toml",
+        "render ball.nrrd -o a.png --stats ./a.png",
+        "render ball.nrrd -o sub/a.png --stats sub/../sub/a.png",
+    ] {
+        place.refused(&format!("{line} {REFERENCE}"), 2);
+    }
+    // The control: other files are fine.
+    place.done(&format!(
+        "render ball.nrrd -o a.png --stats sub/a.json --mode dvr --tf own.toml {REFERENCE}"
+    ));
 }
 
 #[test]

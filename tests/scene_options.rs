@@ -224,6 +224,7 @@ fn nonsense_is_refused_with_a_reason() {
         ("eye = [1, 2, 3]\nzoom = 2", "exclude each other"),
         ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
         ("up = [0, 1, 0]", "'up' goes with 'eye'"),
+        ("eye = [0, 1e31, 0]", "'eye' is too far away"),
     ] {
         let said = refusal(text);
         assert!(said.contains(reason), "{text}: {said}");
@@ -235,6 +236,7 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
         "carm = 'LAO 10'\nview = 'anterior'",
+        "eye = [0, 1e29, 0]",
     ] {
         assert!(file(text).checked().is_ok(), "{text}");
     }
@@ -268,9 +270,9 @@ fn a_wrong_scene_file_is_refused_with_its_line() {
 #[test]
 fn every_number_with_a_domain_refuses_what_is_outside() {
     for (flag, inside, outside) in [
-        ("iso", "50%", ["101%", "nan", "1e999"]),
-        ("fov", "30", ["0", "180", "nan"]),
-        ("ortho", "1", ["0", "-1", "inf"]),
+        ("iso", "50%", ["101%", "nan", "1e39"]),
+        ("fov", "0.1", ["1e-9", "180", "nan"]),
+        ("ortho", "1", ["1e-13", "-1", "inf"]),
         ("zoom", "3", ["0", "-1", "1e9"]),
         ("step", "1", ["0", "1e-9", "101"]),
         ("termination", "1", ["0", "1.1", "nan"]),
@@ -286,7 +288,7 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
         ("size", "640x480", ["0", "4x", "70000x70000"]),
         ("mode", "minip", ["MIP", "", "xray"]),
         ("refine", "illinois:3", ["newton:0", "secant", "none:3"]),
-        ("window", "otsu,90%", ["5", "a,b", ""]),
+        ("window", "otsu,90%", ["5", "0,1e39", ""]),
     ] {
         let accepted = |value: &str| {
             let flag_takes = Flags::try_parse_from(["angioray", &format!("--{flag}={value}")]);

@@ -96,14 +96,13 @@ pub struct Files {
 
 impl Files {
     /// That what is to be written can be, before hours of work, and replaces no input.
-    pub fn check(&self, inputs: [Option<&Path>; 2]) -> Result<()> {
-        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
-        check(&self.picture, &inputs)?;
+    pub fn check(&self, inputs: &[&Path]) -> Result<()> {
+        check(&self.picture, inputs)?;
         let Some(stats) = &self.stats else {
             return Ok(());
         };
-        check(stats, &inputs)?;
-        if *stats == self.picture {
+        check(stats, inputs)?;
+        if place(stats) == place(&self.picture) {
             return Err(Error::usage(format!(
                 "{}: the picture and the statistics need a file each",
                 stats.display()
@@ -116,35 +115,45 @@ impl Files {
 /// That `path` can become a file: its folder is there, it is no folder itself, and it is none of
 /// the files that the job reads.
 pub fn check(path: &Path, inputs: &[&Path]) -> Result<()> {
-    let place = || path.display();
-    if path.is_dir() {
-        return Err(
-            Error::failed(format!("{}: this is a folder", place())).hint("name a file in it")
-        );
+    let shown = path.display();
+    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(Error::failed(format!("{shown}: this is a folder")).hint("name a file in it"));
     }
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder(path);
     if !folder.is_dir() {
         return Err(Error::failed(format!(
-            "{}: there is no folder {} to write to",
-            place(),
+            "{shown}: there is no folder {} to write to",
             folder.display()
         ))
         .hint("make the folder first"));
     }
-    let same = |input: &&&Path| match (fs::canonicalize(path), fs::canonicalize(input)) {
-        (Ok(output), Ok(input)) => output == input,
-        _ => false,
-    };
-    match inputs.iter().find(same) {
-        Some(_) => Err(Error::usage(format!(
-            "{}: this file is read, writing would replace it",
-            place()
-        ))),
-        None => Ok(()),
+    if path.is_symlink() && !path.exists() {
+        return Err(Error::failed(format!(
+            "{shown}: this is a symbolic link to a file that is not there"
+        ))
+        .hint("remove the link, or name its target"));
     }
+    if inputs.iter().any(|input| place(input) == place(path)) {
+        return Err(Error::usage(format!(
+            "{shown}: this file is read, writing would replace it"
+        )));
+    }
+    Ok(())
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.
+fn place(path: &Path) -> PathBuf {
+    let there = || fs::canonicalize(path);
+    let will_be =
+        |_| fs::canonicalize(folder(path)).map(|f| f.join(path.file_name().unwrap_or_default()));
+    there().or_else(will_be).unwrap_or_else(|_| path.to_owned())
 }
 
 /// `--aov`: layers by name, or all.

@@ -1,10 +1,11 @@
 //! `angioray render`.
 
+use std::path::Path;
 use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
-use crate::scene::SceneOptions;
+use crate::scene::{SceneOptions, TransferChoice};
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Source, ms_since};
@@ -41,7 +42,9 @@ pub struct RenderArguments {
 impl RenderArguments {
     pub fn run(self) -> Result<()> {
         let file = self.scene.open()?;
-        let options = self.options.over(SceneOptions::of_file(&file)?).checked()?;
+        let options = self.options.over(SceneOptions::of_file(&file)?);
+        let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
+        let options = options.checked()?;
         let output = OutputOptions::of_file(&file)?;
         let output = self.output.clone().over(self.output.keep_of(output));
         let device = self.device.keep_of(file.group()?);
@@ -49,7 +52,13 @@ impl RenderArguments {
 
         let files = output.files()?;
         let source = Source::of(&options.volume)?;
-        files.check([Some(source.path.as_path()), self.scene.path()])?;
+        let inputs = [
+            Some(source.path.as_path()),
+            self.scene.path(),
+            transfer_file.as_deref(),
+        ];
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+        files.check(&inputs)?;
         let engine = Engine::open(&device)?;
 
         let bars = Bars::new();

@@ -12,7 +12,6 @@ use super::{
     TransferChoice, VolumeOptions,
 };
 use crate::error::{Error, Result};
-use crate::scene::TransferFile;
 use crate::scene::toml_error::{line, located};
 
 /// A scene file's text and where it comes from. Groups of options are taken from it one by one:
@@ -124,11 +123,10 @@ impl SceneOptions {
             sampling: file.group::<SamplingOptions>()?,
             tone: file.group::<ToneOptions>()?,
         };
-        if let Some(TransferChoice::Named(name)) = &mut options.picture.tf
-            && !TransferFile::presets().any(|preset| preset == name)
-        {
-            let FilePath(path) = file.named_here(FilePath(PathBuf::from(&*name)));
-            *name = path.to_string_lossy().into_owned();
+        if let Some(path) = options.picture.tf.as_ref().and_then(TransferChoice::file) {
+            let FilePath(path) = file.named_here(FilePath(path));
+            let name = path.to_string_lossy().into_owned();
+            options.picture.tf = Some(TransferChoice::Named(name));
         }
         Ok(options)
     }

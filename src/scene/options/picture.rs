@@ -3,6 +3,7 @@
 
 use std::convert::Infallible;
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use serde::de::value::MapAccessDeserializer;
@@ -100,6 +101,16 @@ pub enum TransferChoice {
 }
 
 impl TransferChoice {
+    /// The file named, where it is one.
+    pub fn file(&self) -> Option<PathBuf> {
+        match self {
+            Self::Named(name) if TransferFile::presets().all(|preset| preset != name) => {
+                Some(PathBuf::from(name))
+            }
+            _ => None,
+        }
+    }
+
     /// # Errors
     /// As [`TransferFile::named`].
     pub fn read(self) -> Result<TransferFile> {

@@ -80,6 +80,11 @@ impl<'de> Visitor<'de> for Text {
         Ok(number.to_string())
     }
 
+    /// What no 64 bits hold.
+    fn visit_i128<E>(self, number: i128) -> Result<String, E> {
+        Ok(number.to_string())
+    }
+
     fn visit_f64<E>(self, number: f64) -> Result<String, E> {
         Ok(number.to_string())
     }

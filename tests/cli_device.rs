@@ -124,7 +124,8 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
         v.as_array()
             .is_some_and(|a| a.len() == 13 && a.iter().all(text))
     };
-    let checks: [(&str, &dyn Fn(&Value) -> bool); 28] = [
+    type Check<'a> = &'a dyn Fn(&Value) -> bool;
+    let checks: [(&str, Check); 28] = [
         ("/version", &text),
         ("/command", &text),
         ("/scene", &Value::is_object),
@@ -154,7 +155,7 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
         ("/counts/hits", &count),
         ("/memory/device_bytes", &count),
     ];
-    let holds = |path: &str, check: &dyn Fn(&Value) -> bool| stats.pointer(path).is_some_and(check);
+    let holds = |path: &str, check: Check| stats.pointer(path).is_some_and(check);
     let missing = checks.iter().filter(|(path, check)| !holds(path, check));
     missing.map(|(path, _)| *path).collect()
 }

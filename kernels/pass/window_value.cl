@@ -14,7 +14,10 @@ kernel void window_value(RayGrid rays, float2 window, const global uint *kind, c
         return;
     uint pixel = j * rays.width + i;
 
-    float grey = clamp((value[pixel] - window.x) / (window.y - window.x), 0.0f, 1.0f);
+    // Halves, so that the widest window does not overflow; one too narrow for single precision is a step.
+    float above = 0.5f * value[pixel] - 0.5f * window.x;
+    float width = 0.5f * window.y - 0.5f * window.x;
+    float grey = width > 0.0f ? clamp(above / width, 0.0f, 1.0f) : (above > 0.0f ? 1.0f : 0.0f);
     float light = linear_from_srgb(grey);
     color[pixel] = kind[pixel] == KIND_NOTHING ? (float4)(0.0f) : (float4)(light, light, light, 1.0f);
 }

@@ -107,7 +107,7 @@ impl Device {
         let context = core::create_context(Some(&properties), &[device_id], None, None)
             .map_err(|e| device_error("open the device", &e))?;
         let profiling = CommandQueueProperties::PROFILING_ENABLE;
-        let queue = core::create_command_queue(&context, &device_id, Some(profiling))
+        let queue = core::create_command_queue(&context, device_id, Some(profiling))
             .map_err(|e| device_error("make a command queue", &e))?;
         Ok(Self {
             info,

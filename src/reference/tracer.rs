@@ -60,16 +60,10 @@ pub struct Tracer<'a> {
 
 impl<'a> Tracer<'a> {
     /// # Errors
-    /// The volume's values or its geometry leave the range of double precision.
+    /// The volume's spacing is too small for double precision.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
         let range = volume.range();
         let magnitude = range.min.abs().max(range.max.abs());
-        if !(magnitude * 1e3).is_finite() {
-            return Err(Error::failed(format!(
-                "the volume's values, {} to {}, are too large to compute with",
-                range.min, range.max
-            )));
-        }
         let index_from_world = volume.geometry().index_from_world().matrix3;
         if !index_from_world.is_finite() {
             return Err(Error::failed(format!(

@@ -76,7 +76,7 @@ impl Volume {
     ///
     /// # Errors
     /// The voxel count differs from `dims`; no voxel is finite; a voxel is not finite and
-    /// `non_finite` refuses it; `rescale` is not finite, or makes values that are not.
+    /// `non_finite` refuses it; `rescale` is not finite, or makes values beyond single precision.
     pub fn new(
         dims: Dims,
         voxels: Voxels,
@@ -109,10 +109,13 @@ impl Volume {
         volume.settle_falling_slope();
         volume.settle_exponent();
         let range = volume.range();
-        if !range.min.is_finite() || !range.max.is_finite() {
+        let largest = range.min.abs().max(range.max.abs());
+        if largest > f64::from(f32::MAX) {
             return Err(Error::failed(format!(
-                "the calibration slope {}, intercept {} takes values beyond all numbers",
-                rescale.slope, rescale.intercept
+                "the values reach {largest:e} after the calibration slope {}, intercept {}: pictures hold single precision, {:e} at most",
+                rescale.slope,
+                rescale.intercept,
+                f32::MAX
             )));
         }
         Ok(volume)
@@ -249,5 +252,57 @@ impl Volume {
             radius_mm = radius_mm.max(world_from_index.transform_point3(p_index).distance(center));
         }
         (center, radius_mm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_voxels(slope: f64) -> Result<Volume> {
+        let dims = Dims::new([2, 1, 1]).unwrap();
+        let rescale = Rescale {
+            slope,
+            intercept: 0.0,
+        };
+        Volume::new(
+            dims,
+            vec![0_u8, 255].into(),
+            Geometry::default(),
+            rescale,
+            NonFinite::Replace,
+        )
+    }
+
+    #[test]
+    fn values_beyond_single_precision_are_refused() {
+        assert!(two_voxels(1e36).is_ok());
+        for slope in [1e37, -1e37, 1e307, f64::MAX, f64::INFINITY, f64::NAN, 0.0] {
+            assert_eq!(
+                two_voxels(slope).err().map(|e| e.exit_code()),
+                Some(1),
+                "{slope}"
+            );
+        }
+    }
+
+    #[test]
+    fn extreme_floats_are_scaled_and_keep_their_values() {
+        for scale in [1e-30_f32, 1e30] {
+            let voxels = vec![scale, 3.0 * scale];
+            let volume = Volume::new(
+                Dims::new([2, 1, 1]).unwrap(),
+                voxels.clone().into(),
+                Geometry::default(),
+                Rescale::IDENTITY,
+                NonFinite::Refuse,
+            )
+            .unwrap();
+            assert!((1.0..4.0).contains(&volume.stored_range().max));
+            for (i, &voxel) in voxels.iter().enumerate() {
+                let stored = volume.voxels().stored(i);
+                assert_eq!(volume.rescale().physical(stored), f64::from(voxel));
+            }
+        }
     }
 }

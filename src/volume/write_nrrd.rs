@@ -1,7 +1,6 @@
 //! A volume as an attached NRRD file (format definition: teem.sourceforge.net/nrrd/format.html).
 
-use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use flate2::Compression;
@@ -10,6 +9,7 @@ use glam::DVec3;
 
 use super::{Rescale, Volume, VoxelType, Voxels};
 use crate::error::{Error, Result};
+use crate::output::write_atomically;
 
 /// Writes `volume` to `path`: attached header, LPS space, raw or gzip encoding, the machine's
 /// byte order (named in the header; little on every machine in use). NRRD has no calibration: a
@@ -27,47 +27,20 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
         calibrated = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
         &calibrated
     };
-    let cannot = |cause: io::Error| Error::io(path, "write the volume", &cause);
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(Error::failed(format!(
-            "{}: cannot write the volume: there is no folder '{}'",
-            path.display(),
-            folder.display()
-        )));
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".angioray-").suffix(".nrrd");
-    // What the process's umask leaves of it, as for any new file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder).map_err(cannot)?;
-
-    let mut out = BufWriter::with_capacity(1 << 20, file.as_file());
-    let written = (|| {
-        out.write_all(header(volume, voxels.voxel_type(), gzip).as_bytes())?;
-        if gzip {
-            let mut encoder = GzEncoder::new(&mut out, Compression::default());
-            encoder.write_all(voxels.bytes())?;
-            encoder.finish()?;
-        } else {
-            out.write_all(voxels.bytes())?;
-        }
-        out.flush()
-    })();
-    drop(out);
-    written.map_err(cannot)?;
-    if fs::metadata(path).is_ok_and(|there| there.is_dir()) {
-        return Err(Error::failed(format!(
-            "{}: cannot write the volume: it is a folder",
-            path.display()
-        )));
-    }
-    file.persist(path).map_err(|error| cannot(error.error))?;
-    Ok(())
+    write_atomically(path, |out| {
+        let write = || -> io::Result<()> {
+            out.write_all(header(volume, voxels.voxel_type(), gzip).as_bytes())?;
+            if gzip {
+                let mut encoder = GzEncoder::new(out, Compression::default());
+                encoder.write_all(voxels.bytes())?;
+                encoder.finish()?;
+                Ok(())
+            } else {
+                out.write_all(voxels.bytes())
+            }
+        };
+        write().map_err(|cause| Error::io(path, "write the volume", &cause))
+    })
 }
 
 /// The header, its closing blank line included.

@@ -46,12 +46,10 @@ pub fn cast_emission(
             value::<Shading>("shading"),
             output::<[f32; 4]>("color"),
         ];
-        if with_counters {
-            signature.extend([output::<u32>("steps"), output::<u32>("nodes")]);
-        }
+        signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let mut launch = pass
+    let launch = pass
         .launch(run.device)
         .input(&volume.voxels)
         .input(node_class)
@@ -63,10 +61,5 @@ pub fn cast_emission(
         .value(cast)
         .value(shading)
         .output(color);
-    if let Some(counters) = counters {
-        launch = launch
-            .output(&mut counters.steps)
-            .output(&mut counters.nodes);
-    }
-    launch.run(run.size, run.work_group, run.timings)
+    Counters::give(counters, launch).run(run.size, run.work_group, run.timings)
 }

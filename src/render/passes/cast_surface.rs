@@ -42,9 +42,7 @@ pub fn cast_surface(
         if with_layers {
             signature.extend([output::<f32>("depth"), output::<f32>("value")]);
         }
-        if with_counters {
-            signature.extend([output::<u32>("steps"), output::<u32>("nodes")]);
-        }
+        signature.extend(Counters::parameters(with_counters));
         signature
     })?;
     let mut launch = pass
@@ -60,10 +58,5 @@ pub fn cast_surface(
     if let Some((depth, value)) = layers {
         launch = launch.output(depth).output(value);
     }
-    if let Some(counters) = counters {
-        launch = launch
-            .output(&mut counters.steps)
-            .output(&mut counters.nodes);
-    }
-    launch.run(run.size, run.work_group, run.timings)
+    Counters::give(counters, launch).run(run.size, run.work_group, run.timings)
 }

@@ -14,7 +14,8 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::gpu::{
-    AnyBuffer, Buffer, Defines, Device, Element, Parameter, Pass, Timings, input, input_of,
+    AnyBuffer, Buffer, Defines, Device, Element, Launch, Parameter, Pass, Timings, input, input_of,
+    output,
 };
 
 use super::abi::VolumeGrid;
@@ -110,6 +111,26 @@ impl DeviceVolume {
 pub struct Counters {
     pub steps: Buffer<u32>,
     pub nodes: Buffer<u32>,
+}
+
+impl Counters {
+    /// Their place at the end of a cast's signature.
+    fn parameters(wanted: bool) -> impl Iterator<Item = Parameter> {
+        ["steps", "nodes"]
+            .into_iter()
+            .filter(move |_| wanted)
+            .map(output::<u32>)
+    }
+
+    /// Gives them, when they are wanted, as a cast's last arguments.
+    fn give<'a>(counters: Option<&mut Self>, launch: Launch<'a>) -> Launch<'a> {
+        match counters {
+            Some(counters) => launch
+                .output(&mut counters.steps)
+                .output(&mut counters.nodes),
+            None => launch,
+        }
+    }
 }
 
 fn voxels(variant: Variant) -> Parameter {

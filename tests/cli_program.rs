@@ -1,94 +1,13 @@
 //! The program from outside: exit codes, what goes where, files. Pictures by the reference, small.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod cli_place;
+
+use std::path::Path;
+use std::process::Stdio;
 
 use serde_json::Value;
-use tempfile::TempDir;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_angioray");
-
-/// A folder with a phantom to work in.
-struct Place {
-    folder: TempDir,
-}
-
-impl Place {
-    fn empty() -> Self {
-        Self {
-            folder: tempfile::tempdir().unwrap(),
-        }
-    }
-
-    /// With a ball of 16³ voxels, `ball.nrrd`: 0 outside, 200 inside.
-    fn with_ball() -> Self {
-        let place = Self::empty();
-        place.done("phantom sphere -o ball.nrrd --size 16");
-        place
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.path(name), text).unwrap();
-    }
-
-    fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(PROGRAM);
-        command
-            .args(line.split_whitespace())
-            .current_dir(self.folder.path());
-        command
-    }
-
-    fn run(&self, line: &str) -> Output {
-        self.command(line).output().unwrap()
-    }
-
-    /// Runs a line that must succeed; its stdout.
-    fn done(&self, line: &str) -> String {
-        let output = self.run(line);
-        assert!(output.status.success(), "{line}: {}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    /// Runs a line that must fail with this exit code, one error line, nothing on stdout and no
-    /// file left behind; its stderr.
-    fn refused(&self, line: &str, code: i32) -> String {
-        let before = self.files();
-        let output = self.run(line);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
-        assert!(output.stdout.is_empty(), "{line}");
-        let errors = said.lines().filter(|l| l.starts_with("error: ")).count();
-        assert_eq!(errors, 1, "{line}: {said}");
-        let known = ["error: ", "hint: ", "note: "];
-        let stray = said
-            .lines()
-            .find(|l| !known.iter().any(|k| l.starts_with(k)));
-        assert_eq!(stray, None, "{line}");
-        assert!(!said.contains('\u{1b}'), "{line}: {said:?}");
-        assert_eq!(self.files(), before, "{line}");
-        said
-    }
-
-    fn files(&self) -> Vec<PathBuf> {
-        let entries = std::fs::read_dir(self.folder.path()).unwrap();
-        let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
-        files.sort();
-        files
-    }
-
-    fn json(&self, name: &str) -> Value {
-        serde_json::from_str(&std::fs::read_to_string(self.path(name)).unwrap()).unwrap()
-    }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
+use cli_place::{Place, stderr};
 
 const REFERENCE: &str = "--device reference --size 16";
 
@@ -307,6 +226,7 @@ fn failed_jobs_are_exit_1() {
         ),
         ("phantom sphere -o no/such/a.nrrd", "no/such"),
         ("info none.nrrd", "none.nrrd"),
+        ("render none.nrrd -o a.png/ --device reference", "a.png/"),
     ] {
         let said = place.refused(line, 1);
         assert!(said.contains(reason), "{line}: {said}");
@@ -441,4 +361,122 @@ fn a_volume_is_never_written_over() {
     );
     assert!(said.contains("ball.nrrd"), "{said}");
     assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
+    // Nor what else is read, nor one output by the other, by whatever way.
+    place.write("own.toml", "points = [[1, 1, 1, 1, 0.5]]\n");
+    std::fs::create_dir(place.path("sub")).unwrap();
+    for line in [
+        "render ball.nrrd -o a.png --stats sub/../own.toml --mode dvr --tf own.toml",
+        "render ball.nrrd -o a.png --stats ./a.png",
+        "render ball.nrrd -o sub/a.png --stats sub/../sub/a.png",
+    ] {
+        place.refused(&format!("{line} {REFERENCE}"), 2);
+    }
+    // The control: other files are fine.
+    place.done(&format!(
+        "render ball.nrrd -o a.png --stats sub/a.json --mode dvr --tf own.toml {REFERENCE}"
+    ));
+}
+
+#[test]
+fn every_flag_is_a_key_of_the_command_s_scene_file() {
+    let place = Place::empty();
+    let command = |name: &str| {
+        let help = place.done(&format!("{name} --help"));
+        let flag = |line: &str| {
+            let (_, after) = line.trim_start().split_at_checked(0)?;
+            let after = after.strip_prefix("-o, ").unwrap_or(after);
+            let name = after.strip_prefix("--")?;
+            let end = name.find(|c: char| !(c.is_ascii_lowercase() || c == '-'));
+            Some(name[..end.unwrap_or(name.len())].to_owned())
+        };
+        let flags: Vec<String> = help.lines().filter_map(flag).collect();
+        assert!(flags.contains(&"scene".to_owned()), "{name}: {flags:?}");
+        flags
+    };
+    let mut keys: Vec<String> = ["render", "info", "phantom", "devices"]
+        .into_iter()
+        .flat_map(command)
+        .filter(|flag| flag != "scene")
+        .collect();
+    assert!(keys.len() > 40, "{keys:?}");
+    keys.extend(["volume".to_owned(), "kind".to_owned()]);
+    for key in keys {
+        // Of a wrong type for every key: accepted as a key, refused as a value by its command.
+        place.write("keys.toml", &format!("\n{key} = {{ a = 1 }}\n"));
+        let refusals: Vec<String> = ["render", "info", "phantom"]
+            .into_iter()
+            .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
+            .collect();
+        let at = |said: &String| said.starts_with("error: keys.toml:2: ");
+        assert!(refusals.iter().any(at), "{key}: {refusals:?}");
+        let unknown = |said: &String| said.contains("no option of a scene");
+        assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
+    }
+    // The controls: keys that no command has.
+    for key in ["scene", "help", "phantom", "quad"] {
+        place.write("keys.toml", &format!("\n{key} = 1\n"));
+        for command in ["render", "info", "phantom", "devices"] {
+            let said = place.refused(&format!("{command} --scene keys.toml"), 2);
+            assert!(said.starts_with("error: keys.toml:2: "), "{said}");
+        }
+    }
+}
+
+#[test]
+fn one_scene_file_serves_several_commands() {
+    let place = Place::empty();
+    std::fs::create_dir(place.path("scenes")).unwrap();
+    // Files are relative to the scene file.
+    place.write(
+        "scenes/all.toml",
+        "kind = 'slab'\nspacing = 0.5\ntype = 'f32'\nthickness = 2\naxis = 'x'\nseed = 3\n\
+         noise = 0.01\ngzip = true\noutput = '../slab.nrrd'\nsize = [12, 10, 8]\n\
+         volume = '../slab.nrrd'\njson = true\n",
+    );
+    let info = |line: &str| {
+        let text = place.done(line);
+        serde_json::from_str::<Value>(&text).unwrap_or_else(|_| panic!("{line}: {text}"))
+    };
+    place.done("phantom --scene scenes/all.toml");
+    let slab = info("info --scene scenes/all.toml");
+    assert_eq!(slab["dims"], serde_json::json!([12, 10, 8]));
+    assert_eq!(slab["spacing_mm"], serde_json::json!([0.5, 0.5, 0.5]));
+    assert_eq!(slab["type"], "f32");
+    let header =
+        String::from_utf8_lossy(&std::fs::read(place.path("slab.nrrd")).unwrap()).into_owned();
+    assert!(header.contains("encoding: gzip"));
+    // A flag wins; another kind drops what belongs to the file's.
+    place.done("phantom ramp --scene scenes/all.toml -o ramp.nrrd --size 6 --gzip=off");
+    assert_eq!(
+        info("info ramp.nrrd --json")["dims"],
+        serde_json::json!([6, 6, 6])
+    );
+    let text = place.done("info --scene scenes/all.toml ramp.nrrd --json=off");
+    assert!(text.contains("6x6x6 f32"), "{text}");
+
+    place.write(
+        "render.toml",
+        "volume = 'slab.nrrd'\noutput = 'slab.exr'\nstats = 'slab.json'\naov = 'all'\n\
+         device = 'reference'\nsize = [9, 7]\nmode = 'mip'\n",
+    );
+    place.done("info --scene render.toml");
+    place.done("render --scene render.toml");
+    let stats = place.json("slab.json");
+    assert_eq!(stats["device"]["name"], "reference");
+    assert_eq!(stats["counts"]["rays"], 63);
+    // Nothing of where the picture goes is part of the scene.
+    for key in ["output", "stats", "aov", "device"] {
+        assert!(stats["scene"].get(key).is_none(), "{key}");
+    }
+    // A picture without layers drops the file's, which by themselves do not fit.
+    place.done("render --scene render.toml -o slab.png --stats png.json --mode minip");
+    assert_eq!(place.json("png.json")["scene"]["mode"], "minip");
+    place.refused("render --scene render.toml -o again.png --aov all", 2);
+    place.write(
+        "work.toml",
+        "work-group = [4, 4]\nquality = 50\nbit-depth = 16\n",
+    );
+    place.done("render slab.nrrd -o w.exr --size 4 --scene work.toml --device reference");
+    place.write("work.toml", "work-group = [4, 4]\ndevice = 'reference'\n");
+    place.refused("render slab.nrrd -o w2.exr --size 4 --scene work.toml", 2);
 }

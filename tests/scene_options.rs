@@ -2,7 +2,8 @@
 
 use angioray::extent::{ImageSize, Range};
 use angioray::scene::{
-    Lens, Picture, Projection, Resolved, SceneOptions, Subject, Threshold, TransferChoice,
+    Lens, Picture, Projection, Resolved, SceneFile, SceneOptions, Subject, Threshold,
+    TransferChoice,
 };
 use clap::Parser;
 use glam::DVec3;
@@ -157,7 +158,8 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
     std::fs::write(&path, "volume = 'head.nrrd'\nmode = 'dvr'\ntf = 'own.toml'").unwrap();
     let tf = "points = [[5, 1, 1, 1, 0.5]]";
     std::fs::write(folder.path().join("own.toml"), tf).unwrap();
-    let options = SceneOptions::read(&path).unwrap().checked().unwrap();
+    let read = || SceneOptions::of_file(&SceneFile::read(&path).unwrap()).unwrap();
+    let options = read().checked().unwrap();
     let volume = options.volume.volume.unwrap().0;
     assert_eq!(volume, folder.path().join("head.nrrd"));
     let Some(TransferChoice::Written(own)) = options.picture.tf else {
@@ -166,9 +168,9 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
     assert_eq!(own.points[0][0], 5.0);
     // The control: a preset's name is no file.
     std::fs::write(&path, "mode = 'dvr'\ntf = 'mra'").unwrap();
-    assert!(SceneOptions::read(&path).unwrap().checked().is_ok());
+    assert!(read().checked().is_ok());
     std::fs::write(&path, "mode = 'dvr'\ntf = 'none.toml'").unwrap();
-    assert!(SceneOptions::read(&path).unwrap().checked().is_err());
+    assert!(read().checked().is_err());
 }
 
 #[test]
@@ -222,6 +224,7 @@ fn nonsense_is_refused_with_a_reason() {
         ("eye = [1, 2, 3]\nzoom = 2", "exclude each other"),
         ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
         ("up = [0, 1, 0]", "'up' goes with 'eye'"),
+        ("eye = [0, 1e31, 0]", "'eye' is too far away"),
     ] {
         let said = refusal(text);
         assert!(said.contains(reason), "{text}: {said}");
@@ -233,6 +236,7 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
         "carm = 'LAO 10'\nview = 'anterior'",
+        "eye = [0, 1e29, 0]",
     ] {
         assert!(file(text).checked().is_ok(), "{text}");
     }
@@ -266,9 +270,9 @@ fn a_wrong_scene_file_is_refused_with_its_line() {
 #[test]
 fn every_number_with_a_domain_refuses_what_is_outside() {
     for (flag, inside, outside) in [
-        ("iso", "50%", ["101%", "nan", "1e999"]),
-        ("fov", "30", ["0", "180", "nan"]),
-        ("ortho", "1", ["0", "-1", "inf"]),
+        ("iso", "50%", ["101%", "nan", "1e39"]),
+        ("fov", "0.1", ["1e-9", "180", "nan"]),
+        ("ortho", "1", ["1e-13", "-1", "inf"]),
         ("zoom", "3", ["0", "-1", "1e9"]),
         ("step", "1", ["0", "1e-9", "101"]),
         ("termination", "1", ["0", "1.1", "nan"]),
@@ -284,7 +288,7 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
         ("size", "640x480", ["0", "4x", "70000x70000"]),
         ("mode", "minip", ["MIP", "", "xray"]),
         ("refine", "illinois:3", ["newton:0", "secant", "none:3"]),
-        ("window", "otsu,90%", ["5", "a,b", ""]),
+        ("window", "otsu,90%", ["5", "0,1e39", ""]),
     ] {
         let accepted = |value: &str| {
             let flag_takes = Flags::try_parse_from(["angioray", &format!("--{flag}={value}")]);

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::Device;
 
+use super::scene::SceneArgument;
 use super::terminal::to_stdout;
 
 /// List the OpenCL devices
@@ -13,10 +14,14 @@ use super::terminal::to_stdout;
 #[command(after_help = "Example:
   angioray devices
   angioray render head.nrrd -o head.png --device 0")]
-pub struct DevicesArguments {}
+pub struct DevicesArguments {
+    #[command(flatten)]
+    scene: SceneArgument,
+}
 
 impl DevicesArguments {
     pub fn run(self) -> Result<()> {
+        self.scene.open()?;
         let devices = Device::list()?;
         to_stdout(|out| {
             for device in &devices {

@@ -1,16 +1,17 @@
 //! `angioray info`.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 
 use serde::Serialize;
 
 use crate::error::Result;
 use crate::octree::Octree;
-use crate::scene::{SceneOptions, VolumeOptions};
+use crate::scene::options::group::group;
+use crate::scene::{Switch, VolumeOptions};
 
-use super::load::{self, Loaded, Source};
+use super::load::{Loaded, Source};
 use super::progress::Bars;
+use super::scene::SceneArgument;
 use super::stats::VolumeStats;
 use super::terminal::to_stdout;
 
@@ -26,28 +27,35 @@ pub struct InfoArguments {
     #[command(flatten)]
     volume: VolumeOptions,
 
-    /// Take the volume and how it is read from a scene file; flags win over it
-    #[arg(long, value_name = "FILE.toml", help_heading = "Volume")]
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    scene: SceneArgument,
 
-    /// Print JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    form: FormOptions,
+}
+
+group! {
+    /// How it is printed.
+    #[command(next_help_heading = "Output")]
+    pub struct FormOptions {
+        /// Print JSON
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on")]
+        json: Switch,
+    }
 }
 
 impl InfoArguments {
     pub fn run(self) -> Result<()> {
-        let flags = SceneOptions {
-            volume: self.volume,
-            ..SceneOptions::default()
-        };
-        let options = load::options(flags, self.scene.as_deref())?;
-        let source = Source::of(&options.volume)?;
+        let file = self.scene.open()?;
+        let options = self.volume.over(VolumeOptions::of_file(&file)?);
+        let form = self.form.over(file.group()?);
+        let source = Source::of(&options)?;
         let bars = Bars::new();
         let loaded = source.load(&bars)?;
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let info = Info::of(&source, &loaded, &octree);
-        if self.json {
+        if form.json.is_some_and(Switch::is_on) {
             return to_stdout(|out| {
                 serde_json::to_writer_pretty(&mut *out, &info)?;
                 writeln!(out)

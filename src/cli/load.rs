@@ -1,12 +1,12 @@
 //! The volume that the options name: read, smoothed, and as the scene sees it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::octree::Leaf;
 use crate::progress::Progress;
-use crate::scene::{NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions};
+use crate::scene::{NonFiniteRule, SigmaMm, SpacingMm, Subject, VolumeOptions};
 use crate::volume::{
     self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, suggested_iso,
 };
@@ -104,16 +104,6 @@ impl Source {
             smooth_ms,
         })
     }
-}
-
-/// The flags over the scene file, where there is one; all that can be checked without the volume
-/// is.
-pub fn options(flags: SceneOptions, scene_file: Option<&Path>) -> Result<SceneOptions> {
-    let file = match scene_file {
-        Some(path) => SceneOptions::read(path)?,
-        None => SceneOptions::default(),
-    };
-    flags.over(file).checked()
 }
 
 pub fn ms_since(began: Instant) -> f64 {

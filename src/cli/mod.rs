@@ -1,12 +1,14 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod devices;
+mod engine;
 mod info;
 mod load;
 mod outputs;
 mod phantom;
 mod progress;
 mod render;
+mod scene;
 mod stats;
 mod terminal;
 
@@ -84,6 +86,8 @@ fn misused(stop: &clap::Error) -> Error {
     let before_usage = text.lines().take_while(|line| !line.starts_with("Usage:"));
     for line in before_usage.map(str::trim) {
         match line.strip_prefix("tip: ") {
+            // Where no flag is alike the parser takes a wrong one for a value, which none is.
+            Some(tip) if tip.starts_with("to pass ") => {}
             Some(tip) => hints.push(tip),
             None if line.starts_with("For more information") => {}
             None if !line.is_empty() => message.push(line),

@@ -1,49 +1,164 @@
 //! The files a job writes: known to be writable before the work is done.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
-use crate::frame::Layer;
+use crate::frame::{BitDepth, Encoding, Format, Layer};
+use crate::scene::options::group::group;
+use crate::scene::options::plain::readable;
+use crate::scene::{FilePath, SceneFile};
+
+group! {
+    /// The files that a rendering writes.
+    #[command(next_help_heading = "Output")]
+    pub struct OutputOptions {
+        /// The picture: .png, .jpg, .webp for display, .exr, .npy for measuring
+        #[arg(short, long, value_name = "FILE")]
+        output: FilePath,
+
+        /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast,
+        /// kind, with commas between, or all
+        #[arg(long, value_name = "LIST|all")]
+        aov: Layers,
+
+        /// Bits per channel of a .png: 8 or 16 [default: 8]
+        #[arg(long, value_name = "8|16")]
+        bit_depth: Bits,
+
+        /// Quality of a .jpg, 1 to 100 [default: 92]
+        #[arg(long, value_name = "N")]
+        quality: u8,
+
+        /// Write what was rendered and how long it took as JSON
+        #[arg(long, value_name = "FILE.json")]
+        stats: FilePath,
+    }
+}
+
+impl OutputOptions {
+    /// What a scene file says of the output; the files that it names are relative to it.
+    pub fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        Ok(Self {
+            output: options.output.map(|path| file.named_here(path)),
+            stats: options.stats.map(|path| file.named_here(path)),
+            ..options
+        })
+    }
+
+    /// What of a scene file still applies when these are the flags: another picture file drops what
+    /// its format cannot hold.
+    pub fn keep_of(&self, mut file: Self) -> Self {
+        if let Some(FilePath(path)) = &self.output
+            && let Ok(format) = Format::from_path(path)
+        {
+            file.aov = file.aov.filter(|_| format.carries_layers());
+            file.bit_depth = file.bit_depth.filter(|_| format == Format::Png);
+            file.quality = file.quality.filter(|_| format == Format::Jpeg);
+        }
+        file
+    }
+
+    /// # Errors
+    /// No picture named; what its format cannot hold.
+    pub fn files(self) -> Result<Files> {
+        let Some(FilePath(picture)) = self.output else {
+            return Err(Error::usage("no picture to write was named")
+                .hint("give its file by '--output', or as 'output' in the scene file"));
+        };
+        let format = Format::from_path(&picture)?;
+        if self.quality.is_some() && format != Format::Jpeg {
+            return Err(Error::usage("'--quality' is for .jpg files only"));
+        }
+        let encoding = Encoding {
+            format,
+            bit_depth: self.bit_depth.map_or(BitDepth::Eight, |Bits(bits)| bits),
+            quality: self.quality.unwrap_or(Encoding::DEFAULT_QUALITY),
+            layers: self.aov.map_or(Vec::new(), |Layers(layers)| layers),
+        };
+        encoding.check()?;
+        Ok(Files {
+            picture,
+            encoding,
+            stats: self.stats.map(|FilePath(path)| path),
+        })
+    }
+}
+
+/// What a rendering writes.
+pub struct Files {
+    pub picture: PathBuf,
+    pub encoding: Encoding,
+    pub stats: Option<PathBuf>,
+}
+
+impl Files {
+    /// That what is to be written can be, before hours of work, and replaces no input.
+    pub fn check(&self, inputs: &[&Path]) -> Result<()> {
+        check(&self.picture, inputs)?;
+        let Some(stats) = &self.stats else {
+            return Ok(());
+        };
+        check(stats, inputs)?;
+        if place(stats) == place(&self.picture) {
+            return Err(Error::usage(format!(
+                "{}: the picture and the statistics need a file each",
+                stats.display()
+            )));
+        }
+        Ok(())
+    }
+}
 
 /// That `path` can become a file: its folder is there, it is no folder itself, and it is none of
 /// the files that the job reads.
 pub fn check(path: &Path, inputs: &[&Path]) -> Result<()> {
-    let place = || path.display();
-    if path.is_dir() {
-        return Err(
-            Error::failed(format!("{}: this is a folder", place())).hint("name a file in it")
-        );
+    let shown = path.display();
+    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(Error::failed(format!("{shown}: this is a folder")).hint("name a file in it"));
     }
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder(path);
     if !folder.is_dir() {
         return Err(Error::failed(format!(
-            "{}: there is no folder {} to write to",
-            place(),
+            "{shown}: there is no folder {} to write to",
             folder.display()
         ))
         .hint("make the folder first"));
     }
-    let same = |input: &&&Path| match (fs::canonicalize(path), fs::canonicalize(input)) {
-        (Ok(output), Ok(input)) => output == input,
-        _ => false,
-    };
-    match inputs.iter().find(same) {
-        Some(_) => Err(Error::usage(format!(
-            "{}: this file is read, writing would replace it",
-            place()
-        ))),
-        None => Ok(()),
+    if path.is_symlink() && !path.exists() {
+        return Err(Error::failed(format!(
+            "{shown}: this is a symbolic link to a file that is not there"
+        ))
+        .hint("remove the link, or name its target"));
     }
+    if inputs.iter().any(|input| place(input) == place(path)) {
+        return Err(Error::usage(format!(
+            "{shown}: this file is read, writing would replace it"
+        )));
+    }
+    Ok(())
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.
+fn place(path: &Path) -> PathBuf {
+    let there = || fs::canonicalize(path);
+    let will_be =
+        |_| fs::canonicalize(folder(path)).map(|f| f.join(path.file_name().unwrap_or_default()));
+    there().or_else(will_be).unwrap_or_else(|_| path.to_owned())
 }
 
 /// `--aov`: layers by name, or all.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layers(pub Vec<Layer>);
+pub struct Layers(Vec<Layer>);
 
 impl FromStr for Layers {
     type Err = Error;
@@ -64,3 +179,21 @@ impl FromStr for Layers {
         layers.collect::<Result<Vec<_>>>().map(Self)
     }
 }
+
+/// `--bit-depth`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bits(BitDepth);
+
+impl FromStr for Bits {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match text {
+            "8" => Ok(Self(BitDepth::Eight)),
+            "16" => Ok(Self(BitDepth::Sixteen)),
+            _ => Err(Error::usage("a .png has 8 or 16 bits per channel")),
+        }
+    }
+}
+
+readable!(Layers, Bits);

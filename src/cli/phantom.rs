@@ -1,18 +1,21 @@
 //! `angioray phantom`.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
-use clap::builder::PossibleValue;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::output::write_atomically;
-use crate::scene::SpacingMm;
+use crate::scene::options::group::group;
+use crate::scene::options::plain::readable;
+use crate::scene::{FilePath, SpacingMm, Switch};
 use crate::volume::{PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd};
 
 use super::outputs;
+use super::scene::SceneArgument;
 use super::terminal::{message, note};
 
 /// Make a test volume whose field is known
@@ -20,99 +23,150 @@ use super::terminal::{message, note};
 /// Kinds: sphere, slab, ramp, gaussian, marschner-lobb, voxel, noise, and vessels: a seeded tree
 /// that branches by Murray's law, whose centrelines and radii go into FILE.tree.json.
 #[derive(clap::Args)]
+#[command(override_usage = "angioray phantom KIND -o FILE.nrrd [OPTIONS]")]
 #[command(after_help = "Example:
   angioray phantom vessels -o vessels.nrrd --size 256 --seed 7
   angioray phantom sphere -o sphere.nrrd --size 64x64x32 --spacing 1,1,2 --type f32")]
 pub struct PhantomArguments {
-    /// What it contains
-    #[arg(value_name = "KIND", value_parser = kinds(), ignore_case = false)]
-    kind: String,
+    #[command(flatten)]
+    phantom: PhantomOptions,
 
-    /// The NRRD file to write
-    #[arg(short, long, value_name = "FILE.nrrd")]
-    output: PathBuf,
+    #[command(flatten)]
+    shape: ShapeOptions,
 
-    /// Voxels along each axis [default: 128; 41 for marschner-lobb]
-    #[arg(long, value_name = "N|NXxNYxNZ")]
-    size: Option<GridSize>,
+    #[command(flatten)]
+    scene: SceneArgument,
+}
 
-    /// Voxel spacing in mm
-    #[arg(long, value_name = "S|SX,SY,SZ", default_value = "1")]
-    spacing: SpacingMm,
+group! {
+    /// What is made, of which voxels.
+    pub struct PhantomOptions {
+        /// What it contains
+        #[arg(value_name = "KIND", value_parser = kind())]
+        kind: PhantomKind,
 
-    /// Voxel type: u8, u16, i16 or f32
-    #[arg(long = "type", value_name = "TYPE", default_value = "u8", value_parser = voxel_type)]
-    voxel_type: VoxelType,
+        /// The NRRD file to write
+        #[arg(short, long, value_name = "FILE.nrrd")]
+        output: FilePath,
 
-    /// Decides the vessel tree and all noise
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
+        /// Voxels along each axis [default: 128; 41 for marschner-lobb]
+        #[arg(long, value_name = "N|NXxNYxNZ")]
+        size: GridSize,
 
-    /// Standard deviation of noise added to every voxel, as a share of the value range
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
-    noise: f64,
+        /// Voxel spacing in mm [default: 1]
+        #[arg(long, value_name = "S|SX,SY,SZ")]
+        spacing: SpacingMm,
 
-    /// Compress the voxels with gzip (such a file cannot be mapped when it is read)
-    #[arg(long)]
-    gzip: bool,
+        /// Voxel type: u8, u16, i16 or f32 [default: u8]
+        #[arg(id = "type", long = "type", value_name = "TYPE")]
+        #[serde(rename = "type")]
+        voxel_type: VoxelName,
 
-    /// Sphere: its radius; vessels: the root's radius, mm [default: by the size]
-    #[arg(long, value_name = "MM", help_heading = "Shape")]
-    radius: Option<f64>,
+        /// Decides the vessel tree and all noise [default: 1]
+        #[arg(long, value_name = "S")]
+        seed: u64,
 
-    /// Vessels: the radius of the finest tips, mm [default: half a voxel]
-    #[arg(long, value_name = "MM", help_heading = "Shape")]
-    tip_radius: Option<f64>,
+        /// Standard deviation of noise added to every voxel, as a share of the value range
+        /// [default: 0]
+        #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+        noise: f64,
 
-    /// Slab: its thickness, mm [default: by the size]
-    #[arg(long, value_name = "MM", help_heading = "Shape")]
-    thickness: Option<f64>,
+        /// Compress the voxels with gzip (such a file cannot be mapped when it is read)
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on")]
+        gzip: Switch,
+    }
+}
 
-    /// Slab: the axis it lies across [default: z]
-    #[arg(long, value_name = "x|y|z", help_heading = "Shape", value_parser = axis)]
-    axis: Option<usize>,
+group! {
+    /// The shape of what is in it.
+    #[command(next_help_heading = "Shape")]
+    pub struct ShapeOptions {
+        /// Sphere: its radius; vessels: the root's radius, mm [default: by the size]
+        #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+        radius: f64,
 
-    /// Gaussian: its standard deviation, mm [default: by the size]
-    #[arg(long, value_name = "MM", help_heading = "Shape")]
-    sigma: Option<f64>,
+        /// Vessels: the radius of the finest tips, mm [default: half a voxel]
+        #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+        tip_radius: f64,
+
+        /// Slab: its thickness, mm [default: by the size]
+        #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+        thickness: f64,
+
+        /// Slab: the axis it lies across [default: z]
+        #[arg(long, value_name = "x|y|z")]
+        axis: Axis,
+
+        /// Gaussian: its standard deviation, mm [default: by the size]
+        #[arg(long, value_name = "MM", allow_hyphen_values = true)]
+        sigma: f64,
+    }
 }
 
 impl PhantomArguments {
     pub fn run(self) -> Result<()> {
-        if !self
-            .output
+        let file = self.scene.open()?;
+        let mut from_file = file.group::<PhantomOptions>()?;
+        from_file.output = from_file.output.map(|path| file.named_here(path));
+        // Another kind than the file's has another shape.
+        let shape = match self.phantom.kind {
+            Some(kind) if from_file.kind.is_some_and(|other| other != kind) => {
+                ShapeOptions::default()
+            }
+            _ => file.group()?,
+        };
+        let asked = self.phantom.over(from_file);
+        let shape = self.shape.over(shape);
+
+        let Some(kind) = asked.kind else {
+            let kinds = PhantomKind::ALL.map(PhantomKind::name).join(", ");
+            return Err(
+                Error::usage("no kind of phantom was named").hint(format!("write one of {kinds}"))
+            );
+        };
+        let Some(FilePath(output)) = asked.output else {
+            return Err(Error::usage("no file to write was named")
+                .hint("give it by '--output', or as 'output' in the scene file"));
+        };
+        if !output
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("nrrd"))
         {
             return Err(Error::usage(format!(
                 "{}: phantoms are written as NRRD",
-                self.output.display()
+                output.display()
             ))
             .hint("end the name in .nrrd"));
         }
-        outputs::check(&self.output, &[])?;
-        let kind: PhantomKind = self.kind.parse()?;
-        let dims = match self.size {
+        let inputs: Vec<&Path> = self.scene.path().into_iter().collect();
+        outputs::check(&output, &inputs)?;
+        let dims = match asked.size {
             Some(GridSize(dims)) => dims,
             None => Dims::new([u64::from(kind.default_size()); 3])?,
         };
+        let default = PhantomSpec::new(kind, dims);
         let spec = PhantomSpec {
-            spacing_mm: self.spacing.0.into(),
-            voxel_type: self.voxel_type,
-            seed: self.seed,
-            radius_mm: self.radius,
-            tip_radius_mm: self.tip_radius,
-            thickness_mm: self.thickness,
-            axis: self.axis,
-            sigma_mm: self.sigma,
-            noise: self.noise,
-            ..PhantomSpec::new(kind, dims)
+            spacing_mm: asked
+                .spacing
+                .map_or(default.spacing_mm, |SpacingMm(each)| each.into()),
+            voxel_type: asked
+                .voxel_type
+                .map_or(default.voxel_type, |VoxelName(voxel_type)| voxel_type),
+            seed: asked.seed.unwrap_or(default.seed),
+            radius_mm: shape.radius,
+            tip_radius_mm: shape.tip_radius,
+            thickness_mm: shape.thickness,
+            axis: shape.axis.map(|Axis(axis)| axis),
+            sigma_mm: shape.sigma,
+            noise: asked.noise.unwrap_or(default.noise),
+            ..default
         };
         let made = phantom(&spec)?;
         made.volume.notes().iter().for_each(note);
         if let Some(tree) = &made.tree {
-            let path = self.output.with_extension("tree.json");
-            outputs::check(&path, &[])?;
+            let path = output.with_extension("tree.json");
+            outputs::check(&path, &inputs)?;
             write_tree(&path, tree)?;
             message(format_args!(
                 "wrote {}: {} vessel segments",
@@ -120,11 +174,11 @@ impl PhantomArguments {
                 tree.segments.len()
             ));
         }
-        write_nrrd(&made.volume, &self.output, self.gzip)?;
+        write_nrrd(&made.volume, &output, asked.gzip.is_some_and(Switch::is_on))?;
         message(format_args!(
             "wrote {}: {dims} {}; {}",
-            self.output.display(),
-            self.voxel_type,
+            output.display(),
+            spec.voxel_type,
             made.truth
         ));
         Ok(())
@@ -140,16 +194,16 @@ fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {
     })
 }
 
-fn kinds() -> Vec<PossibleValue> {
-    PhantomKind::ALL
-        .into_iter()
-        .map(|kind| PossibleValue::new(kind.name()).help(kind.description()))
-        .collect()
+/// The kinds by name, each with its sentence in the help.
+fn kind() -> impl TypedValueParser<Value = PhantomKind> {
+    let names =
+        PhantomKind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.description()));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<PhantomKind>())
 }
 
 /// `NXxNYxNZ`, or `N` for a cube.
-#[derive(Debug, Clone, Copy)]
-struct GridSize(Dims);
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridSize(Dims);
 
 impl FromStr for GridSize {
     type Err = Error;
@@ -161,7 +215,7 @@ impl FromStr for GridSize {
             ))
         };
         let sides: Vec<u64> = text
-            .split('x')
+            .split(['x', ','])
             .map(|side| side.parse().map_err(|_| wrong()))
             .collect::<Result<_>>()?;
         let dims = match sides[..] {
@@ -173,18 +227,36 @@ impl FromStr for GridSize {
     }
 }
 
-fn voxel_type(text: &str) -> Result<VoxelType> {
-    VoxelType::ALL
-        .into_iter()
-        .find(|t| t.name() == text)
-        .ok_or_else(|| Error::usage("a voxel is u8, u16, i16 or f32"))
-}
+/// `--type`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VoxelName(VoxelType);
 
-fn axis(text: &str) -> Result<usize> {
-    match text {
-        "x" => Ok(0),
-        "y" => Ok(1),
-        "z" => Ok(2),
-        _ => Err(Error::usage("an axis is x, y or z")),
+impl FromStr for VoxelName {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let found = VoxelType::ALL.into_iter().find(|t| t.name() == text);
+        found.map(Self).ok_or_else(|| {
+            Error::usage(format!(
+                "'{text}' is not a voxel type: write u8, u16, i16 or f32"
+            ))
+        })
     }
 }
+
+/// `--axis`: of the index space, 0 to 2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis(usize);
+
+impl FromStr for Axis {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let found = ["x", "y", "z"].iter().position(|name| *name == text);
+        found
+            .map(Self)
+            .ok_or_else(|| Error::usage(format!("'{text}' is not an axis: write x, y or z")))
+    }
+}
+
+readable!(PhantomKind, GridSize, VoxelName, Axis);

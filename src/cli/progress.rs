@@ -73,3 +73,10 @@ impl Progress for Bars {
         }
     }
 }
+
+/// Work that failed leaves no bar behind.
+impl Drop for Bars {
+    fn drop(&mut self) {
+        self.end();
+    }
+}

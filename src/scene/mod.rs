@@ -6,7 +6,7 @@
 mod camera;
 mod color;
 mod light;
-mod options;
+pub(crate) mod options;
 mod picture;
 mod sampling;
 mod toml_error;

@@ -14,6 +14,7 @@ use crate::scene::{Camera, Lens};
 
 group! {
     /// Where the eye is and how it looks. Lengths in mm, world space LPS.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Camera")]
     pub struct CameraOptions {
         /// Width and height of the picture in pixels [default: 512x512]
@@ -74,6 +75,8 @@ group! {
 
 impl CameraOptions {
     const DEFAULT_FOV_DEG: f64 = 30.0;
+    /// How far out the eye and the target may be: their distance squared is a number still.
+    const FAR_MM: f64 = 1e30;
 
     /// The keys given that place the eye by a view.
     fn view_keys(&self) -> Vec<&'static str> {
@@ -125,8 +128,15 @@ impl CameraOptions {
     }
 
     /// # Errors
-    /// Options that contradict each other.
+    /// Options that contradict each other, a point too far away.
     pub(super) fn check(&self) -> Result<()> {
+        for (key, point) in [("eye", self.eye), ("target", self.target)] {
+            if point.is_some_and(|Triple(p)| p.abs().max_element() > Self::FAR_MM) {
+                return Err(Error::usage(format!(
+                    "'{key}' is too far away: each coordinate must be within -1e30 to 1e30 mm"
+                )));
+            }
+        }
         if self.fov.is_some() && self.ortho.is_some() {
             return Err(Error::usage(
                 "'fov' and 'ortho' exclude each other: a picture is perspective or orthographic",

@@ -1,105 +1,159 @@
 //! The scene file: TOML with the flags' names as keys.
 
-use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, Deserializer};
 
 use super::{
-    CameraOptions, PictureOptions, SamplingOptions, SceneOptions, ToneOptions, TransferChoice,
-    VolumeOptions,
+    CameraOptions, FilePath, PictureOptions, SamplingOptions, SceneOptions, ToneOptions,
+    TransferChoice, VolumeOptions,
 };
 use crate::error::{Error, Result};
-use crate::scene::TransferFile;
 use crate::scene::toml_error::{line, located};
 
-impl SceneOptions {
-    /// A scene file. Its `volume`, and its `tf` when that is a file, are relative to it.
-    ///
+/// A scene file's text and where it comes from. Groups of options are taken from it one by one:
+/// one file can serve several commands.
+pub struct SceneFile {
+    text: String,
+    /// Names the file in errors.
+    place: String,
+    /// Against which the files that it names are resolved.
+    folder: PathBuf,
+}
+
+impl SceneFile {
     /// # Errors
-    /// An unreadable file; anything wrong in it, with its line.
+    /// An unreadable file.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
             .map_err(|cause| Error::io(path, "read the scene", &cause))?;
-        let mut options = Self::parse(&text, &path.display().to_string())?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        options.volume.volume = options.volume.volume.map(|file| file.seen_from(folder));
-        if let Some(TransferChoice::Named(name)) = &mut options.picture.tf
-            && !TransferFile::presets().any(|preset| preset == name)
-        {
-            *name = folder.join(&*name).to_string_lossy().into_owned();
+        Ok(Self {
+            text,
+            place: path.display().to_string(),
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+        })
+    }
+
+    /// From a scene file's text; `place` names it in errors. The files that it names are relative
+    /// to the working folder.
+    pub fn of_text(text: &str, place: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            place: place.to_owned(),
+            folder: PathBuf::new(),
+        }
+    }
+
+    /// The group whose flags' names are keys of this file; all other keys are left alone.
+    ///
+    /// # Errors
+    /// No TOML; a wrong value; as `place:line: …`.
+    pub fn group<T: Args + DeserializeOwned>(&self) -> Result<T> {
+        let document = self.document()?;
+        let span = document.span();
+        let names = flag_names(&T::augment_args(clap::Command::new("scene")));
+        let own: DeTable<'_> = document
+            .into_inner()
+            .into_iter()
+            .filter(|(key, _)| names.iter().any(|name| name == key.get_ref().as_ref()))
+            .collect();
+        T::deserialize(Deserializer::from(Spanned::new(span, own)))
+            .map_err(|error| located(&error, &self.text, &self.place))
+    }
+
+    /// That every key is one of `known`.
+    ///
+    /// # Errors
+    /// No TOML; the first key that is not, as `place:line: …`.
+    pub fn check_keys(&self, known: &[String]) -> Result<()> {
+        let table = self.document()?.into_inner();
+        let is_known = |key: &str| known.iter().any(|name| name == key);
+        let strays = table.keys().filter(|key| !is_known(key.get_ref()));
+        let Some(stray) = strays.min_by_key(|key| key.span().start) else {
+            return Ok(());
+        };
+        let name = stray.get_ref();
+        let at = format!("{}:{}", self.place, line(&self.text, stray.span().start));
+        let error = Error::usage(format!("'{name}' is no option of a scene")).at(at);
+        let wanted = name.replace('_', "-");
+        if is_known(&wanted) {
+            return Err(error.hint(format!("write '{wanted}'")));
+        }
+        let mut known: Vec<&str> = known.iter().map(String::as_str).collect();
+        known.sort_unstable();
+        known.dedup();
+        Err(error.hint(format!("the options are {}", known.join(", "))))
+    }
+
+    /// A file named in this one: relative to it.
+    #[must_use]
+    pub fn named_here(&self, file: FilePath) -> FilePath {
+        FilePath(self.folder.join(file.0))
+    }
+
+    fn document(&self) -> Result<Spanned<DeTable<'_>>> {
+        DeTable::parse(&self.text).map_err(|error| located(&error, &self.text, &self.place))
+    }
+}
+
+/// The scene file keys of a command's flags: their names, and those of its arguments without a
+/// flag.
+pub fn flag_names(command: &clap::Command) -> Vec<String> {
+    let name = |argument: &clap::Arg| match argument.get_long() {
+        Some(long) => long.to_owned(),
+        None => argument.get_id().as_str().replace('_', "-"),
+    };
+    command.get_arguments().map(name).collect()
+}
+
+impl SceneOptions {
+    /// What a scene file says of the scene. Its `volume`, and its `tf` when that is a file, are
+    /// relative to it.
+    ///
+    /// # Errors
+    /// As [`SceneFile::group`].
+    pub fn of_file(file: &SceneFile) -> Result<Self> {
+        let mut options = Self {
+            volume: VolumeOptions::of_file(file)?,
+            picture: file.group::<PictureOptions>()?,
+            camera: file.group::<CameraOptions>()?,
+            sampling: file.group::<SamplingOptions>()?,
+            tone: file.group::<ToneOptions>()?,
+        };
+        if let Some(path) = options.picture.tf.as_ref().and_then(TransferChoice::file) {
+            let FilePath(path) = file.named_here(FilePath(path));
+            let name = path.to_string_lossy().into_owned();
+            options.picture.tf = Some(TransferChoice::Named(name));
         }
         Ok(options)
     }
 
-    /// From a scene file's text; `place` names it in errors.
+    /// From the text of a scene file that says nothing but the scene; `place` names it in errors.
     ///
     /// # Errors
-    /// Anything wrong, as `place:line: …`.
+    /// Anything wrong, an unknown key too, as `place:line: …`.
     pub fn parse(text: &str, place: &str) -> Result<Self> {
-        let document = DeTable::parse(text).map_err(|error| located(&error, text, place))?;
-        let span = document.span();
-        let mut rest = document.into_inner();
-        let mut group = Taken {
-            rest: &mut rest,
-            span,
-            text,
-            place,
-        };
-        let options = Self {
-            volume: group.take::<VolumeOptions>()?,
-            picture: group.take::<PictureOptions>()?,
-            camera: group.take::<CameraOptions>()?,
-            sampling: group.take::<SamplingOptions>()?,
-            tone: group.take::<ToneOptions>()?,
-        };
-        match rest.keys().min_by_key(|key| key.span().start) {
-            Some(key) => Err(unknown(key, text, place)),
-            None => Ok(options),
-        }
+        let file = SceneFile::of_text(text, place);
+        file.check_keys(&flag_names(&Self::augment_args(clap::Command::new(
+            "scene",
+        ))))?;
+        Self::of_file(&file)
     }
 }
 
-/// A document from which each group takes the keys that are its flags.
-struct Taken<'a, 'text> {
-    rest: &'a mut DeTable<'text>,
-    span: Range<usize>,
-    text: &'text str,
-    place: &'a str,
-}
-
-impl<'text> Taken<'_, 'text> {
-    fn take<T: Args + Deserialize<'text>>(&mut self) -> Result<T> {
-        let names = names::<T>();
-        let (own, rest) = std::mem::take(self.rest)
-            .into_iter()
-            .partition(|(key, _)| names.iter().any(|name| name == key.get_ref().as_ref()));
-        *self.rest = rest;
-        let own: Spanned<DeTable<'text>> = Spanned::new(self.span.clone(), own);
-        T::deserialize(Deserializer::from(own))
-            .map_err(|error| located(&error, self.text, self.place))
+impl VolumeOptions {
+    /// What a scene file says of the volume, whose file is relative to it.
+    ///
+    /// # Errors
+    /// As [`SceneFile::group`].
+    pub fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        Ok(Self {
+            volume: options.volume.map(|volume| file.named_here(volume)),
+            ..options
+        })
     }
-}
-
-/// The keys of a group: its flags' names, and its arguments without a flag.
-fn names<T: Args>() -> Vec<String> {
-    T::augment_args(clap::Command::new("scene"))
-        .get_arguments()
-        .map(|arg| arg.get_id().as_str().replace('_', "-"))
-        .collect()
-}
-
-fn unknown(key: &Spanned<toml::de::DeString<'_>>, text: &str, place: &str) -> Error {
-    let at = format!("{place}:{}", line(text, key.span().start));
-    let mut known: Vec<String> = names::<SceneOptions>();
-    let wanted = key.get_ref().replace('_', "-");
-    let error = Error::usage(format!("'{}' is no option of a scene", key.get_ref())).at(at);
-    if known.contains(&wanted) {
-        return error.hint(format!("write '{wanted}'"));
-    }
-    known.sort();
-    error.hint(format!("the options are {}", known.join(", ")))
 }

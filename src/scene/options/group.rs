@@ -1,12 +1,13 @@
-//! A group of options: flags, scene file keys and stats entries of the same names.
+//! A group of options: flags and scene file keys of the same names.
 
 /// Declares a struct whose fields are all optional, with `over`: what it says, and for what it
-/// does not say, what another says.
+/// does not say, what another says. With `derive(serde::Serialize)` it is a part of the stored
+/// scene.
 macro_rules! group {
     ($(#[$meta:meta])* pub struct $name:ident {
         $($(#[$field_meta:meta])* $field:ident: $type:ty,)*
     }) => {
-        #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize, serde::Deserialize)]
+        #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Deserialize)]
         $(#[$meta])*
         #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
         pub struct $name {
@@ -26,4 +27,4 @@ macro_rules! group {
         }
     };
 }
-pub(super) use group;
+pub(crate) use group;

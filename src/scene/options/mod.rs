@@ -4,13 +4,16 @@
 //! Every option may be absent. [`SceneOptions::resolve`] fills in the defaults, which depend on the
 //! volume, and makes the [`Scene`]; the filled options, read back as a scene file, make the same
 //! scene again.
+//!
+//! What does not determine the picture (its file, the device) is no scene option, but its flags can
+//! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
 
 mod camera;
 mod file;
-mod group;
+pub(crate) mod group;
 mod numbers;
 mod picture;
-mod plain;
+pub(crate) mod plain;
 mod sampling;
 mod shown;
 mod subject;
@@ -20,6 +23,7 @@ mod volume;
 mod words;
 
 pub use camera::CameraOptions;
+pub use file::{SceneFile, flag_names};
 pub use numbers::{
     AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
     StepVoxels, Termination, Zoom,

@@ -56,9 +56,11 @@ pub(super) fn number(text: &str) -> crate::error::Result<f64> {
 
 numbers! {
     /// Vertical field of view, degrees.
-    FovDeg: "a field of view", "between 0 and 180 degrees, both excluded", |v| v > 0.0 && v < 180.0;
+    FovDeg: "a field of view", "from 1e-6 to less than 180 degrees",
+        |v| (1e-6..180.0).contains(&v);
     /// Height of an orthographic image, mm.
-    HeightMm: "an image height", "above 0 and at most 1e9 mm", |v| v > 0.0 && v <= 1e9;
+    HeightMm: "an image height", "from 1e-12 to 1e12 mm",
+        |v| (1e-12..=1e12).contains(&v);
     /// An angle by which the camera turns, degrees.
     AngleDeg: "an angle", "within -3600 to 3600 degrees", |v| v.abs() <= 3600.0;
     /// Magnification of the picture.

@@ -3,6 +3,7 @@
 
 use std::convert::Infallible;
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use serde::de::value::MapAccessDeserializer;
@@ -19,6 +20,7 @@ use crate::scene::{Refine, TransferFile};
 
 group! {
     /// What is shown.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Picture")]
     pub struct PictureOptions {
         /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission
@@ -99,6 +101,16 @@ pub enum TransferChoice {
 }
 
 impl TransferChoice {
+    /// The file named, where it is one.
+    pub fn file(&self) -> Option<PathBuf> {
+        match self {
+            Self::Named(name) if TransferFile::presets().all(|preset| preset != name) => {
+                Some(PathBuf::from(name))
+            }
+            _ => None,
+        }
+    }
+
     /// # Errors
     /// As [`TransferFile::named`].
     pub fn read(self) -> Result<TransferFile> {

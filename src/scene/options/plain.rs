@@ -12,7 +12,7 @@ use serde::{Deserializer, Serializer};
 use crate::extent::ImageSize;
 
 /// Reads a string, a number, on/off as a boolean, or a list (joined by commas) as the flag's text.
-pub(super) fn deserialize<'de, T, D>(from: D) -> Result<T, D::Error>
+pub(crate) fn deserialize<'de, T, D>(from: D) -> Result<T, D::Error>
 where
     T: FromStr<Err: fmt::Display>,
     D: Deserializer<'de>,
@@ -80,6 +80,11 @@ impl<'de> Visitor<'de> for Text {
         Ok(number.to_string())
     }
 
+    /// What no 64 bits hold.
+    fn visit_i128<E>(self, number: i128) -> Result<String, E> {
+        Ok(number.to_string())
+    }
+
     fn visit_f64<E>(self, number: f64) -> Result<String, E> {
         Ok(number.to_string())
     }
@@ -105,8 +110,8 @@ impl<'de> serde::Deserialize<'de> for Item {
     }
 }
 
-/// Gives types with one text form (`FromStr`, `Display`) their place in scene files.
-macro_rules! plain {
+/// Lets types with a text form (`FromStr`) be read from scene files.
+macro_rules! readable {
     ($($type:ty),* $(,)?) => {$(
         impl<'de> serde::Deserialize<'de> for $type {
             fn deserialize<D: serde::Deserializer<'de>>(
@@ -115,6 +120,14 @@ macro_rules! plain {
                 $crate::scene::options::plain::deserialize(from)
             }
         }
+    )*};
+}
+pub(crate) use readable;
+
+/// Gives types with one text form (`FromStr`, `Display`) their place in scene files.
+macro_rules! plain {
+    ($($type:ty),* $(,)?) => {$(
+        $crate::scene::options::plain::readable!($type);
 
         impl serde::Serialize for $type {
             fn serialize<S: serde::Serializer>(

@@ -8,6 +8,7 @@ use crate::scene::{Filter, Sampling, Traverse};
 
 group! {
     /// How rays are followed through the volume.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Sampling")]
     pub struct SamplingOptions {
         /// Distance of samples along a ray, in voxels of the smallest spacing [default: 0.5]

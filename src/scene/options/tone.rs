@@ -8,6 +8,7 @@ use crate::scene::{Rgb, Tone};
 
 group! {
     /// The picture on a display; EXR and NPY never contain any of it.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Display (PNG, JPEG, WebP)")]
     pub struct ToneOptions {
         /// Colour behind everything: sRGB r,g,b from 0 to 1, or #rrggbb [default: 0,0,0]

@@ -47,11 +47,18 @@ impl FromStr for Threshold {
                 ))),
             };
         }
-        number(text).map(Self::Value).map_err(|_| {
+        let value = number(text).map_err(|_| {
             Error::usage(format!(
                 "'{text}' is not a value: write a number, a share of the value range such as 50%, or otsu"
             ))
-        })
+        })?;
+        // As far as single precision goes: no voxel lies beyond.
+        if value.abs() > f64::from(f32::MAX) {
+            return Err(Error::usage(format!(
+                "'{text}' is beyond every volume's values: write a number within -3.4e38 to 3.4e38"
+            )));
+        }
+        Ok(Self::Value(value))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Which volume, and how it is read: what the voxels are before anything looks at them.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::{MapValueParser, PathBufValueParser, TypedValueParser, ValueParserFactory};
 
@@ -13,13 +13,6 @@ use super::words::NonFiniteRule;
 /// A file's path. In a scene file, relative to that file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FilePath(pub PathBuf);
-
-impl FilePath {
-    /// The same file, as seen from where `base` is seen.
-    pub(super) fn seen_from(&self, base: &Path) -> Self {
-        Self(base.join(&self.0))
-    }
-}
 
 impl ValueParserFactory for FilePath {
     type Parser = MapValueParser<PathBufValueParser, fn(PathBuf) -> Self>;
@@ -63,6 +56,7 @@ plain::plain!(RawSizeText);
 
 group! {
     /// The volume and how it is read.
+    #[derive(serde::Serialize)]
     #[command(next_help_heading = "Volume")]
     pub struct VolumeOptions {
         /// The volume: NRRD, MetaImage, NIfTI, NumPy or headerless raw, recognised by its content

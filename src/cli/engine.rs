@@ -1,0 +1,199 @@
+//! What renders: an OpenCL device or the reference.
+
+use std::convert::Infallible;
+use std::str::FromStr;
+use std::time::Instant;
+
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Wanted};
+use crate::gpu::Device;
+use crate::octree::Octree;
+use crate::progress::Progress;
+use crate::reference;
+use crate::render::{Options, Renderer};
+use crate::scene::Scene;
+use crate::scene::options::group::group;
+use crate::scene::options::plain::readable;
+use crate::volume::Volume;
+
+use super::load::{Source, ms_since};
+use super::stats::{DeviceStats, PassStats, Times};
+
+group! {
+    /// What renders, and how it is used.
+    #[command(next_help_heading = "Device")]
+    pub struct DeviceOptions {
+        /// An OpenCL device by its number, part of its name, cpu or gpu; or reference: the
+        /// double-precision renderer, which needs none [default: the first GPU, else the first
+        /// device]
+        #[arg(long, value_name = "ID|NAME|cpu|gpu|reference")]
+        device: DeviceName,
+
+        /// Work items of a group; never changes the picture [default: by the device]
+        #[arg(long, value_name = "WxH")]
+        work_group: WorkGroup,
+    }
+}
+
+impl DeviceOptions {
+    /// What of a scene file still applies when these are the flags: the reference has no work
+    /// groups.
+    pub fn keep_of(&self, mut file: Self) -> Self {
+        if self.device.as_ref().is_some_and(DeviceName::is_reference) {
+            file.work_group = None;
+        }
+        file
+    }
+}
+
+/// `--device`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeviceName(String);
+
+impl DeviceName {
+    fn is_reference(&self) -> bool {
+        self.0 == "reference"
+    }
+}
+
+impl FromStr for DeviceName {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> std::result::Result<Self, Infallible> {
+        Ok(Self(text.to_owned()))
+    }
+}
+
+/// `--work-group`: `WxH` work items.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WorkGroup([usize; 2]);
+
+impl FromStr for WorkGroup {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let side = |side: &str| side.parse().ok().filter(|n| (1..=4096).contains(n));
+        text.split_once(['x', ','])
+            .and_then(|(w, h)| Some(Self([side(w)?, side(h)?])))
+            .ok_or_else(|| {
+                Error::usage(format!(
+                    "'{text}' is not a work group: write WxH, such as 8x8"
+                ))
+            })
+    }
+}
+
+readable!(DeviceName, WorkGroup);
+
+pub enum Engine {
+    Reference,
+    Device {
+        device: Device,
+        work_group: Option<WorkGroup>,
+    },
+}
+
+/// A frame and how it came about.
+pub struct Rendered {
+    pub frame: Frame,
+    pub device: DeviceStats,
+    /// Without reading and encoding.
+    pub times_ms: Times,
+    pub passes: Vec<PassStats>,
+    pub device_bytes: u64,
+}
+
+impl Engine {
+    pub fn open(options: &DeviceOptions) -> Result<Self> {
+        let work_group = options.work_group;
+        match &options.device {
+            Some(name) if name.is_reference() => match work_group {
+                None => Ok(Self::Reference),
+                Some(_) => Err(Error::usage(
+                    "'--work-group' is for OpenCL devices; the reference has none",
+                )),
+            },
+            name => {
+                let choice = name.as_ref().map_or("", |DeviceName(name)| name);
+                let device = Device::select(choice)?;
+                Ok(Self::Device { device, work_group })
+            }
+        }
+    }
+
+    pub fn render(
+        &self,
+        volume: &Volume,
+        source: &Source,
+        scene: &Scene,
+        wanted: Wanted,
+        progress: &dyn Progress,
+    ) -> Result<Rendered> {
+        match self {
+            Self::Reference => by_reference(volume, scene, wanted, progress),
+            Self::Device { device, work_group } => {
+                let began = Instant::now();
+                let octree = Octree::build(volume, source.leaf, progress)?;
+                let octree_ms = ms_since(began);
+                let options = Options {
+                    work_group: work_group.map(|WorkGroup(sides)| sides),
+                };
+                let rendering =
+                    Renderer::new(device, volume, &octree, options)?.render(scene, wanted)?;
+                let info = device.info();
+                Ok(Rendered {
+                    frame: rendering.frame,
+                    device: DeviceStats {
+                        name: info.name.clone(),
+                        platform: info.platform.clone(),
+                        driver: info.driver.clone(),
+                    },
+                    times_ms: Times {
+                        octree: octree_ms,
+                        build: rendering.build_ms,
+                        upload: rendering.upload_ms,
+                        render: rendering.render_ms,
+                        ..Times::default()
+                    },
+                    passes: rendering
+                        .passes
+                        .into_iter()
+                        .map(|pass| PassStats {
+                            name: pass.name.to_owned(),
+                            ms: pass.ms,
+                        })
+                        .collect(),
+                    device_bytes: rendering.device_bytes,
+                })
+            }
+        }
+    }
+}
+
+fn by_reference(
+    volume: &Volume,
+    scene: &Scene,
+    wanted: Wanted,
+    progress: &dyn Progress,
+) -> Result<Rendered> {
+    let began = Instant::now();
+    let frame = reference::render(volume, scene, wanted, progress)?;
+    let render_ms = ms_since(began);
+    Ok(Rendered {
+        frame,
+        device: DeviceStats {
+            name: "reference".into(),
+            platform: "host".into(),
+            driver: concat!("angioray ", env!("CARGO_PKG_VERSION")).into(),
+        },
+        times_ms: Times {
+            render: render_ms,
+            ..Times::default()
+        },
+        passes: vec![PassStats {
+            name: "reference".into(),
+            ms: render_ms,
+        }],
+        device_bytes: 0,
+    })
+}

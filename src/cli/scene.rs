@@ -1,0 +1,42 @@
+//! `--scene`: every command's options from a file.
+
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory;
+
+use crate::error::Result;
+use crate::scene::{SceneFile, flag_names};
+
+use super::Arguments;
+
+#[derive(clap::Args)]
+pub struct SceneArgument {
+    /// Take options from a TOML file: the flags' names as keys, those of other commands left
+    /// alone, files relative to it; flags win over it
+    #[arg(long, value_name = "FILE.toml", help_heading = "Scene")]
+    scene: Option<PathBuf>,
+}
+
+impl SceneArgument {
+    pub fn path(&self) -> Option<&Path> {
+        self.scene.as_deref()
+    }
+
+    /// The file named, or one that says nothing. One file may serve several commands: a key is
+    /// wrong when no command has such a flag.
+    pub fn open(&self) -> Result<SceneFile> {
+        let Some(path) = &self.scene else {
+            return Ok(SceneFile::of_text("", ""));
+        };
+        let file = SceneFile::read(path)?;
+        file.check_keys(&keys())?;
+        Ok(file)
+    }
+}
+
+/// The names of all commands' flags that a scene file may hold.
+fn keys() -> Vec<String> {
+    let program = Arguments::command();
+    let names = program.get_subcommands().flat_map(flag_names);
+    names.filter(|name| name != "scene").collect()
+}

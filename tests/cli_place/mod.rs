@@ -1,0 +1,92 @@
+//! The program run from outside, in a folder of its own.
+#![allow(dead_code)] // each test program uses its own part
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_angioray");
+
+/// A folder with a phantom to work in.
+pub struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    pub fn empty() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    /// With a ball of 16³ voxels, `ball.nrrd`: 0 outside, 200 inside.
+    pub fn with_ball() -> Self {
+        let place = Self::empty();
+        place.done("phantom sphere -o ball.nrrd --size 16");
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    pub fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(PROGRAM);
+        command
+            .args(line.split_whitespace())
+            .current_dir(self.folder.path());
+        command
+    }
+
+    pub fn run(&self, line: &str) -> Output {
+        self.command(line).output().unwrap()
+    }
+
+    /// Runs a line that must succeed; its stdout.
+    pub fn done(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs a line that must fail with this exit code, one error line, nothing on stdout and no
+    /// file left behind; its stderr.
+    pub fn refused(&self, line: &str, code: i32) -> String {
+        let before = self.files();
+        let output = self.run(line);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+        assert!(output.stdout.is_empty(), "{line}");
+        let errors = said.lines().filter(|l| l.starts_with("error: ")).count();
+        assert_eq!(errors, 1, "{line}: {said}");
+        let known = ["error: ", "hint: ", "note: "];
+        let stray = said
+            .lines()
+            .find(|l| !known.iter().any(|k| l.starts_with(k)));
+        assert_eq!(stray, None, "{line}");
+        assert!(!said.contains('\u{1b}'), "{line}: {said:?}");
+        assert_eq!(self.files(), before, "{line}");
+        said
+    }
+
+    pub fn files(&self) -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(self.folder.path()).unwrap();
+        let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
+        files.sort();
+        files
+    }
+
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&std::fs::read_to_string(self.path(name)).unwrap()).unwrap()
+    }
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}

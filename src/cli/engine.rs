@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::Device;
 use crate::octree::Octree;
-use crate::progress::Progress;
+use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
 use crate::render::{Options, Renderer};
 use crate::scene::Scene;
@@ -138,8 +138,10 @@ impl Engine {
                 let options = Options {
                     work_group: work_group.map(|WorkGroup(sides)| sides),
                 };
+                progress.begin("rendering", UNKNOWN_TOTAL);
                 let rendering =
                     Renderer::new(device, volume, &octree, options)?.render(scene, wanted)?;
+                progress.end();
                 let info = device.info();
                 Ok(Rendered {
                     frame: rendering.frame,

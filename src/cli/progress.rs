@@ -6,10 +6,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::progress::Progress;
+use crate::progress::{Progress, UNKNOWN_TOTAL};
 
 /// Work shorter than this shows no bar.
 const SHORT: Duration = Duration::from_millis(400);
+
+/// How often a spinner turns.
+const TICK: Duration = Duration::from_millis(150);
 
 /// One bar at a time, none where stderr is no terminal.
 pub struct Bars {
@@ -41,11 +44,11 @@ impl Progress for Bars {
         if !self.terminal {
             return;
         }
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-        let style = ProgressStyle::with_template("{msg:>12} [{bar:40}] {percent:>3}% {eta}");
-        if let Ok(style) = style {
-            bar.set_style(style.progress_chars("=> "));
-        }
+        let bar = if total == UNKNOWN_TOTAL {
+            spinner()
+        } else {
+            counting_bar(total)
+        };
         bar.set_message(name.to_owned());
         *self.stage() = Some(Stage {
             bar,
@@ -72,6 +75,25 @@ impl Progress for Bars {
             stage.bar.finish_and_clear();
         }
     }
+}
+
+fn counting_bar(total: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
+    let style = ProgressStyle::with_template("{msg:>12} [{bar:40}] {percent:>3}% {eta}");
+    if let Ok(style) = style {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+/// Turns by itself: nothing advances it.
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{msg:>12} {spinner} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
 /// Work that failed leaves no bar behind.

@@ -12,6 +12,7 @@ use crate::volume::Volume;
 
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
+use super::planes::check_room;
 use super::rays::{ray_grid, volume_grid};
 use super::twins;
 use super::variant::{Variant, voxel_cl_name};
@@ -106,6 +107,7 @@ impl<'a> Renderer<'a> {
     /// The device fails or has no room, or the step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
         check_step(&scene.sampling, self.volume)?;
+        check_room(self.device, scene.size, wanted, self.uploaded.bytes())?;
         let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
         let mut run = Run {

@@ -61,6 +61,10 @@ impl TransferFile {
         if let Some((name, text)) = PRESETS.iter().find(|(preset, _)| *preset == name) {
             return Self::parse(text, name);
         }
+        if name.is_empty() {
+            return Err(Error::usage("the transfer function has an empty name")
+                .hint("name a preset (cta, mra, 3dra) or a TOML file"));
+        }
         let path = Path::new(name);
         let text = std::fs::read_to_string(path).map_err(|cause| {
             let presets: Vec<&str> = Self::presets().collect();

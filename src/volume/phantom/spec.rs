@@ -37,6 +37,8 @@ pub struct PhantomSpec {
 
 /// Phantoms end here: 2^34 bytes.
 const MAX_BYTES: u64 = 1 << 34;
+/// Ten times the value range: beyond, the voxel type's limits are all that is left.
+const MAX_NOISE: f64 = 10.0;
 const MIN_SPACING_MM: f64 = 1e-6;
 const MAX_SPACING_MM: f64 = 1e6;
 
@@ -127,9 +129,9 @@ impl PhantomSpec {
                 )));
             }
         }
-        if !self.noise.is_finite() || self.noise < 0.0 {
+        if !(0.0..=MAX_NOISE).contains(&self.noise) {
             return Err(Error::usage(format!(
-                "a noise of {} of the value range is not a standard deviation",
+                "a noise of {:e} of the value range: it must be 0 to {MAX_NOISE}",
                 self.noise
             )));
         }

@@ -115,7 +115,9 @@ const ROWS: &[Row] = &[
     Row { look: Look::Dvr, from: From::Inside, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     Row { look: Look::Dvr, from: From::Orthographic, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     Row { look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
-    Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    // The light goes out at once where normals turn from it: fine steps find where.
+    Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
+    Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
     Row { look: Look::Dvr, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(AlphaMax, 0.03)], ..PLAIN },
     // Spacing 1:1:10, oblique; the calibration of a CT scanner.
     Row { volume: "u16", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },

@@ -2,9 +2,13 @@
 #![allow(dead_code)] // each test program uses its own part
 
 use angioray::extent::{Dims, ImageSize};
+use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
+use angioray::frame::{Frame, Wanted};
 use angioray::gpu::Device;
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
+use angioray::reference;
+use angioray::render::{Options, Renderer};
 use angioray::scene::{Camera, Lens, Light, Picture, Sampling, Scene, Tone};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
@@ -91,4 +95,135 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         light: Light::default(),
         tone: Tone::default(),
     }
+}
+
+/// A hash of three coordinates in 0..1: noise that is the same everywhere.
+pub fn hash(x: f64, y: f64, z: f64) -> f64 {
+    let n = (x as u64 * 73_856_093) ^ (y as u64 * 19_349_663) ^ (z as u64 * 83_492_791);
+    (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64
+}
+
+/// All planes on the device.
+pub fn on_device(device: &Device, volume: &Volume, scenes: &[Scene]) -> Vec<Frame> {
+    let octree = octree(volume);
+    let mut renderer = Renderer::new(device, volume, &octree, Options::default()).unwrap();
+    let frame = |scene| renderer.render(scene, Wanted::ALL).unwrap().frame;
+    scenes.iter().map(frame).collect()
+}
+
+/// All planes by the reference.
+pub fn on_reference(volume: &Volume, scene: &Scene) -> Frame {
+    reference::render(volume, scene, Wanted::ALL, &Silent).unwrap()
+}
+
+/// A figure of how far a picture is from the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Figure {
+    /// Pixels that met another kind of thing, as a share of all.
+    Kind,
+    /// Voxels of the smallest spacing, over pixels that both hit.
+    DepthMean,
+    DepthP99,
+    /// Degrees.
+    NormalMean,
+    NormalP99,
+    /// Share of the volume's value range.
+    ValueMean,
+    ValueMax,
+    /// Linear light, the largest difference of opacity.
+    AlphaMax,
+    /// Display, sRGB-encoded 0..1.
+    ColorMean,
+    ColorP99,
+    ColorMax,
+}
+
+impl Figure {
+    pub fn of(self, truth: &Frame, frame: &Frame, volume: &Volume) -> f64 {
+        let voxel_mm = volume.geometry().smallest_spacing_mm();
+        let range = volume.range();
+        let unit = if range.width() > 0.0 {
+            range.width()
+        } else {
+            range.max.abs().max(1.0)
+        };
+        let depth = || depth_error(truth, frame, voxel_mm).unwrap();
+        let normal = || normal_error(truth, frame).unwrap();
+        let value = || value_error(truth, frame, unit).unwrap();
+        // Nothing to compare is no error: whether anything was hit is `Kind`'s business.
+        match self {
+            Self::Kind => differing_pixels(truth, frame) as f64 / truth.size.pixels() as f64,
+            Self::DepthMean => depth().mean.unwrap_or(0.0),
+            Self::DepthP99 => depth().p99.unwrap_or(0.0),
+            Self::NormalMean => normal().mean_deg.unwrap_or(0.0),
+            Self::NormalP99 => normal().p99_deg.unwrap_or(0.0),
+            Self::ValueMean => value().mean.unwrap_or(0.0),
+            Self::ValueMax => value().max.unwrap_or(0.0),
+            Self::AlphaMax => {
+                let alphas = truth.color.iter().zip(&frame.color);
+                alphas.fold(0.0, |most, (a, b)| most.max(f64::from((a[3] - b[3]).abs())))
+            }
+            Self::ColorMean => color_mean(truth, frame),
+            Self::ColorP99 => color_error(truth, frame).unwrap().p99,
+            Self::ColorMax => color_error(truth, frame).unwrap().max,
+        }
+    }
+}
+
+/// Pixels that met another kind of thing.
+pub fn differing_pixels(truth: &Frame, frame: &Frame) -> usize {
+    let (truth, frame) = (truth.kind.as_ref().unwrap(), frame.kind.as_ref().unwrap());
+    truth.iter().zip(frame).filter(|(a, b)| a != b).count()
+}
+
+fn color_mean(truth: &Frame, frame: &Frame) -> f64 {
+    let (truth, frame) = (
+        truth.display.as_ref().unwrap(),
+        frame.display.as_ref().unwrap(),
+    );
+    let channels = truth.iter().flatten().zip(frame.iter().flatten());
+    let total: f64 = channels.map(|(a, b)| f64::from((a - b).abs())).sum();
+    total / (3 * truth.len()) as f64
+}
+
+/// The picture moved by one pixel along its rows: what every comparison must see.
+pub fn moved_by_a_pixel(frame: &Frame) -> Frame {
+    fn moved<T: Copy>(plane: &mut [T], width: usize) {
+        plane.chunks_mut(width).for_each(|row| row.rotate_right(1));
+    }
+    let width = frame.size.width() as usize;
+    let mut frame = frame.clone();
+    moved(&mut frame.color, width);
+    frame.display.iter_mut().for_each(|p| moved(p, width));
+    frame.depth.iter_mut().for_each(|p| moved(p, width));
+    frame.normal.iter_mut().for_each(|p| moved(p, width));
+    frame.value.iter_mut().for_each(|p| moved(p, width));
+    frame.kind.iter_mut().for_each(|p| moved(p, width));
+    frame
+}
+
+/// That no plane holds a NaN, and only depth infinities.
+pub fn assert_sound(what: &str, frame: &Frame) {
+    let finite = |name: &str, sound: bool| assert!(sound, "{what}: {name} is not finite");
+    let planes = (&frame.display, &frame.normal, &frame.value);
+    finite("color", frame.color.iter().flatten().all(|v| v.is_finite()));
+    finite(
+        "display",
+        planes.0.iter().flatten().flatten().all(|v| v.is_finite()),
+    );
+    finite(
+        "normal",
+        planes.1.iter().flatten().flatten().all(|v| v.is_finite()),
+    );
+    finite("value", planes.2.iter().flatten().all(|v| v.is_finite()));
+    let mut depths = frame.depth.iter().flatten();
+    assert!(
+        depths.all(|d| *d >= 0.0),
+        "{what}: a depth is NaN or negative"
+    );
+    let mut alphas = frame.color.iter().map(|c| c[3]);
+    assert!(
+        alphas.all(|a| (0.0..=1.0).contains(&a)),
+        "{what}: an opacity is not in 0..1"
+    );
 }

@@ -401,11 +401,11 @@ fn opacity_depends_on_the_length_alone_whatever_spacing_direction_and_step() {
         };
         for alpha in measured {
             assert!(
-                (alpha - expected).abs() < 5e-6,
+                (alpha - expected).abs() < 1e-6,
                 "{along}: {alpha}, not {expected}"
             );
             let in_voxels = -(-per_mm * (extent / spacing / along.abs()).min_element()).exp_m1();
-            let off = along.z.abs() > 0.9 && (alpha - in_voxels).abs() < 5e-6;
+            let off = along.z.abs() > 0.9 && (alpha - in_voxels).abs() < 1e-6;
             assert!(!off, "lengths are counted in voxels");
         }
     }

@@ -14,6 +14,13 @@
 #include "lib/shade.clh"
 #include "lib/transfer.clh"
 
+// Half steps that end before the exit, or at it but for rounding.
+static inline uint full_half_steps(Lattice lattice)
+{
+    float over = (float)lattice.last * lattice.step_mm - lattice.length_mm;
+    return over <= 1e-4f * lattice.step_mm || lattice.last == 0u ? lattice.last : lattice.last - 1u;
+}
+
 // The share of the path of sample k of a lattice of half steps, in mm. Simpson's rule holds on the
 // first `simpson` half steps, an even number.
 static inline float path_share_mm(Lattice lattice, uint simpson, uint k)
@@ -45,13 +52,14 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
     Interval interval = volume_interval(volume, ray);
     float3 emitted = (float3)(0.0f);
     float optical_depth = 0.0f;
+    float lost = 0.0f; // of the optical depth by rounding: thousands of thin samples keep their digits
     float transmission = 1.0f;
     uint sample_count = 0u;
     uint node_count = 0u;
 
     if (interval.enter <= interval.exit) {
         Lattice lattice = ray_lattice(volume, ray, interval, 0.5f * cast.step_mm);
-        uint simpson = lattice.last < 2u ? 0u : (lattice.last - 1u) & ~1u;
+        uint simpson = full_half_steps(lattice) & ~1u;
         Walk walk = walk_start(volume, cast.traverse);
         uint3 cell = cell_at(volume, lattice.start);
         uint3 span_cell = cell; // of the last sample of the span before
@@ -84,7 +92,10 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                     rgb = reflect_light(shading, rgb, field_normal(voxels, volume, p, toward_eye), toward_eye);
 #endif
                     emitted += rgb * (transmission * -expm1(-depth_here));
-                    optical_depth += depth_here;
+                    float term = depth_here - lost; // Kahan 1965
+                    float sum = optical_depth + term;
+                    lost = (sum - optical_depth) - term;
+                    optical_depth = sum;
                     transmission = exp(-optical_depth);
                 }
             }

@@ -39,7 +39,9 @@ impl Linear {
 /// however far the eye is.
 pub fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume) -> RayGrid {
     let (center_world, radius_mm) = volume.bounding_sphere();
-    let base_mm = ((center_world - camera.eye_world()).dot(camera.forward()) - radius_mm).max(0.0);
+    // A little before the sphere: a ray through a corner that touches it must still enter by a face.
+    let base_mm =
+        ((center_world - camera.eye_world()).dot(camera.forward()) - 1.001 * radius_mm).max(0.0);
     let index_from_world: DAffine3 = volume.geometry().index_from_world();
 
     let pixel_px = 2.0 / f64::from(size.height());

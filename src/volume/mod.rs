@@ -108,6 +108,7 @@ impl Volume {
         volume.settle_non_finite(non_finite)?;
         volume.settle_falling_slope();
         volume.settle_exponent();
+        volume.settle_offset();
         let range = volume.range();
         let largest = range.min.abs().max(range.max.abs());
         if largest > f64::from(f32::MAX) {
@@ -188,6 +189,22 @@ impl Volume {
         self.stored_range = Range {
             min: self.stored_range.min * down,
             max: self.stored_range.max * down,
+        };
+    }
+
+    /// Floats far from zero compared with their range are counted from their minimum (exact, after
+    /// Sterbenz 1974), so that single precision spends its digits on their differences.
+    fn settle_offset(&mut self) {
+        let Range { min, max } = self.stored_range;
+        let near_each_other = min > 0.0 && max <= 2.0 * min || max < 0.0 && min >= 2.0 * max;
+        if !matches!(self.voxels, Voxels::F32(_)) || !near_each_other || min == max {
+            return;
+        }
+        self.voxels.map_f32(|v| (f64::from(v) - min) as f32);
+        self.rescale.intercept += self.rescale.slope * min;
+        self.stored_range = Range {
+            min: 0.0,
+            max: max - min,
         };
     }
 
@@ -283,6 +300,36 @@ mod tests {
                 Some(1),
                 "{slope}"
             );
+        }
+    }
+
+    #[test]
+    fn floats_far_from_zero_are_counted_from_their_minimum() {
+        for sign in [1.0_f32, -1.0] {
+            let voxels = vec![
+                sign * 1_000_000.0,
+                sign * (1_000_000.0 + 0.0625),
+                sign * 1_000_064.0,
+            ];
+            let volume = Volume::new(
+                Dims::new([3, 1, 1]).unwrap(),
+                voxels.clone().into(),
+                Geometry::default(),
+                Rescale::IDENTITY,
+                NonFinite::Refuse,
+            )
+            .unwrap();
+            assert_eq!(
+                volume.stored_range(),
+                Range {
+                    min: 0.0,
+                    max: 64.0
+                }
+            );
+            for (i, &voxel) in voxels.iter().enumerate() {
+                let stored = volume.voxels().stored(i);
+                assert_eq!(volume.rescale().physical(stored), f64::from(voxel));
+            }
         }
     }
 

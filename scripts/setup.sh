@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Sets up what building, rendering and testing need, where it is missing. Safe to run again.
+# Sets up what is missing, and nothing else. Safe to run again.
 #
-# On Debian and Ubuntu, as root: PoCL (OpenCL on any CPU), the ICD loader, clang (kernel lint) and
-# oclgrind (kernel checks) from the distribution's packages. Elsewhere it says what to install.
+#   scripts/setup.sh        what running needs: Rust, a C linker, the OpenCL loader and a driver (PoCL)
+#   scripts/setup.sh test   and what the tests need: clang (kernel lint), oclgrind (kernel checks)
+#
+# On Debian and Ubuntu, as root, from the distribution's packages. Elsewhere it says what to install.
 set -euo pipefail
 
 say() { printf 'setup: %s\n' "$*" >&2; }
@@ -12,16 +14,27 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 
-have_library() { ldconfig -p 2>/dev/null | grep -q "$1"; }
-have_driver() { [ -n "${OCL_ICD_VENDORS:-}" ] || compgen -G '/etc/OpenCL/vendors/*.icd' >/dev/null; }
-have_clang() { compgen -c clang | grep -qE '^clang(-[0-9]+)?$'; }
+have_loader() {
+    [ "$(uname -s)" = Darwin ] && return 0 # a framework of the system
+    local known
+    known="$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)"
+    case "$known" in *libOpenCL.so.1*) return 0 ;; esac
+    compgen -G '/usr/lib*/libOpenCL.so.1' >/dev/null || compgen -G '/usr/lib/*/libOpenCL.so.1' >/dev/null
+}
+have_driver() {
+    [ "$(uname -s)" = Darwin ] && return 0
+    [ -n "${OCL_ICD_VENDORS:-}" ] || compgen -G '/etc/OpenCL/vendors/*.icd' >/dev/null
+}
+have_clang() { command -v clang >/dev/null || compgen -G '/usr/bin/clang-[0-9]*' >/dev/null; }
 
 missing=()
 command -v cc >/dev/null || missing+=(gcc libc6-dev)
-have_library libOpenCL.so.1 || missing+=(ocl-icd-libopencl1)
+have_loader || missing+=(ocl-icd-libopencl1)
 have_driver || missing+=(pocl-opencl-icd)
-have_clang || missing+=(clang)
-command -v oclgrind >/dev/null || missing+=(oclgrind)
+if [ "${1:-}" = test ]; then
+    have_clang || missing+=(clang)
+    command -v oclgrind >/dev/null || missing+=(oclgrind)
+fi
 
 if [ ${#missing[@]} -eq 0 ]; then
     exit 0
@@ -30,7 +43,7 @@ fi
 case "$(uname -s)" in
 Linux) ;;
 Darwin)
-    say "missing: ${missing[*]}; install them with Homebrew: brew install pocl opencl-icd-loader llvm"
+    say "missing: ${missing[*]} (Debian's names); install their like with Homebrew: brew install llvm oclgrind"
     exit 1
     ;;
 *)

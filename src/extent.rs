@@ -13,8 +13,8 @@ use crate::error::{Error, Result};
 pub struct Dims([u32; 3]);
 
 impl Dims {
-    /// The longest axis: index coordinates stay exact in single precision with room to spare.
-    pub const MAX_AXIS: u64 = 1 << 20;
+    /// The longest axis: beyond, single precision would place a sample worse than 1/256 voxel.
+    pub const MAX_AXIS: u64 = 1 << 16;
     /// The largest volume, in voxels.
     pub const MAX_VOXELS: u64 = 1 << 40;
 
@@ -92,8 +92,8 @@ pub struct ImageSize {
 
 impl ImageSize {
     pub const MAX_SIDE_PX: u32 = 65_535;
-    /// The most pixels: what fits a 32-bit index with all layers.
-    pub const MAX_PIXELS: u64 = 1 << 28;
+    /// The most pixels: all layers of a picture then take a few GiB.
+    pub const MAX_PIXELS: u64 = 1 << 26;
 
     pub fn new(width: u32, height: u32) -> Result<Self> {
         let side = 1..=Self::MAX_SIDE_PX;
@@ -102,7 +102,7 @@ impl ImageSize {
             || u64::from(width) * u64::from(height) > Self::MAX_PIXELS
         {
             return Err(Error::usage(format!(
-                "a picture of {width}x{height} pixels: each side must be 1 to {}, and at most 2^28 pixels in all",
+                "a picture of {width}x{height} pixels: each side must be 1 to {}, and at most 2^26 pixels in all",
                 Self::MAX_SIDE_PX
             )));
         }
@@ -183,8 +183,9 @@ mod tests {
         assert!(Dims::new([1, 1, 1]).is_ok());
         assert!(Dims::new([0, 4, 4]).is_err());
         assert!(Dims::new([u64::MAX, u64::MAX, u64::MAX]).is_err());
-        assert!(Dims::new([1 << 20, 1 << 20, 1]).is_ok());
-        assert!(Dims::new([1 << 20, 1 << 20, 2]).is_err());
+        assert!(Dims::new([1 << 16, 1 << 16, 1 << 8]).is_ok());
+        assert!(Dims::new([1 << 16, 1 << 16, 1 << 9]).is_err());
+        assert!(Dims::new([(1 << 16) + 1, 1, 1]).is_err());
     }
 
     #[test]
@@ -205,7 +206,7 @@ mod tests {
             "x",
             "-1x4",
             "70000x1",
-            "65535x65535",
+            "16384x16384",
             "1e3x4",
         ] {
             assert!(bad.parse::<ImageSize>().is_err(), "{bad}");

@@ -11,15 +11,9 @@ use angioray::scene::{
     Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
-use common::volume_of;
+use common::{hash, volume_of};
 
 const SIZE_PX: u32 = 72; // not a multiple of any work-group below but 8
-
-/// A hash of three coordinates in 0..1: noise that is the same everywhere.
-fn hash(x: f64, y: f64, z: f64) -> f64 {
-    let n = (x as u64 * 73_856_093) ^ (y as u64 * 19_349_663) ^ (z as u64 * 83_492_791);
-    (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64
-}
 
 /// Sparse curved tubes over faint noise, a size that no node edge divides.
 fn tubes() -> Volume {
@@ -37,6 +31,14 @@ fn tubes() -> Volume {
 
 fn noise() -> Volume {
     volume_of([19, 33, 26], |x, y, z| hash(x, y, z) as f32)
+}
+
+/// Both signs and sizes from 1e-4 to 1 beside each other: sums and differences round.
+fn mixed() -> Volume {
+    volume_of([21, 18, 33], |x, y, z| {
+        let size = 10f64.powf(-4.0 * hash(y, z, x));
+        ((2.0 * hash(x, y, z) - 1.0) * size) as f32
+    })
 }
 
 fn pictures(range_max: f64) -> Vec<Picture> {
@@ -123,8 +125,11 @@ fn skipping_and_traversal_never_change_a_bit() {
     let Some(device) = common::device() else {
         return;
     };
-    let cases: [(&str, Volume, &[u32]); 2] =
-        [("tubes", tubes(), &[8, 5]), ("noise", noise(), &[8])];
+    let cases: [(&str, Volume, &[u32]); 3] = [
+        ("tubes", tubes(), &[8, 5]),
+        ("noise", noise(), &[8]),
+        ("mixed", mixed(), &[8]),
+    ];
     for (name, volume, leaves) in cases {
         let mut whole = Vec::new();
         for &leaf in leaves {

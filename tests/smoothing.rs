@@ -23,6 +23,10 @@ fn index([i, j, k]: [u32; 3]) -> usize {
     ((k * DIMS[1] + j) * DIMS[0] + i) as usize
 }
 
+fn physical(volume: &Volume, index: usize) -> f64 {
+    volume.rescale().physical(volume.voxels().stored(index))
+}
+
 /// The largest difference between the response at every voxel and the density of a Gaussian of
 /// `sigma_mm` at it, as a share of the response's peak.
 fn worst(response: &Volume, full: f64, sigma_mm: f64) -> f64 {
@@ -41,7 +45,7 @@ fn worst(response: &Volume, full: f64, sigma_mm: f64) -> f64 {
                         (-0.5 * x * x).exp() * h / (sigma_mm * (2.0 * std::f64::consts::PI).sqrt());
                 }
                 peak = peak.max(density);
-                worst = worst.max((response.voxels().stored(index(at)) - density).abs());
+                worst = worst.max((physical(response, index(at)) - density).abs());
             }
         }
     }
@@ -64,7 +68,7 @@ fn an_impulse_becomes_the_gaussian_in_millimetres() {
             assert!(worst(&smoothed, full, 2.1) > 1e-2, "a wrong sigma");
         }
         let shifted: f64 = (0..volume.voxels().len())
-            .map(|n| smoothed.voxels().stored(n) - base)
+            .map(|n| physical(&smoothed, n) - base)
             .sum();
         assert!(
             (shifted / full - 1.0).abs() < 1e-3,
@@ -129,7 +133,7 @@ fn the_border_continues_outward_on_every_axis() {
                 by_definition(&wide, sigma)
                     .iter()
                     .enumerate()
-                    .map(|(n, v)| (v - smoothed.voxels().stored(n)).abs())
+                    .map(|(n, v)| (v - physical(&smoothed, n)).abs())
                     .fold(0.0, f64::max)
             };
             assert!(distance(sigma) < 1e-5, "axis {axis}, sigma {sigma}");

@@ -8,7 +8,7 @@
 // either end counts when the value falls away from it.
 //
 // Reads the voxels and, per octree node, its range. Writes per pixel kind (surface where the ray
-// meets the volume) and value (physical); with LAYERS depth (mm from the eye; +inf for the mean);
+// meets the volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the eye; +inf for the mean);
 // with COUNTERS the samples taken and the nodes tested.
 #include "lib/octree.clh"
 #include "lib/peak.clh"
@@ -129,7 +129,7 @@ kernel void cast_projection(const global VOXEL *voxels, const global float2 *nod
     }
 
     kind[pixel] = meets ? KIND_SURFACE : KIND_NOTHING;
-    value[pixel] = meets ? volume.slope * found + volume.intercept : 0.0f;
+    value[pixel] = found;
 #if LAYERS
     depth[pixel] = ray.base_mm + (interval.enter + found_mm);
 #endif

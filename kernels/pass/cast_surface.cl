@@ -7,8 +7,8 @@
 // the volume where it is inside hits there.
 //
 // Reads the voxels and, per octree node, its CLASS_*. Writes per pixel hit_mm (from the base plane
-// along the ray; +inf: none) and kind; with LAYERS depth (mm from the eye) and the physical value
-// at the hit; with COUNTERS the samples taken and the nodes tested.
+// along the ray; +inf: none) and kind; with LAYERS depth (mm from the eye) and value at the hit
+// (stored units; 0 without a hit); with COUNTERS the samples taken and the nodes tested.
 #include "lib/octree.clh"
 #include "lib/peak.clh"
 #include "lib/refine.clh"
@@ -125,7 +125,7 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
     kind[pixel] = met;
 #if LAYERS
     depth[pixel] = met == KIND_NOTHING ? INFINITY : ray.base_mm + (interval.enter + hit);
-    value[pixel] = met == KIND_NOTHING ? 0.0f : volume.slope * hit_value + volume.intercept;
+    value[pixel] = hit_value;
 #endif
 #if COUNTERS
     steps[pixel] = sample_count;

@@ -37,9 +37,6 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(VolumeGrid, ny);
         layout[n++] = OFFSET(VolumeGrid, nz);
         layout[n++] = OFFSET(VolumeGrid, levels);
-        layout[n++] = OFFSET(VolumeGrid, slope);
-        layout[n++] = OFFSET(VolumeGrid, intercept);
-        layout[n++] = OFFSET(VolumeGrid, pad);
     }
     {
         SurfaceCast value;

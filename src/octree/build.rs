@@ -51,7 +51,7 @@ fn span(leaf: u32, l: u32, leaves: u32, voxels: u32) -> (usize, usize, usize) {
 
 impl Octree {
     /// # Errors
-    /// More nodes than 32 bits count (beyond 2^40 voxels at leaf 8).
+    /// More nodes than 32 bits count.
     pub fn build(volume: &Volume, leaf: Leaf, progress: &dyn Progress) -> Result<Self> {
         let dims = volume.dims();
         let levels = levels(dims, leaf)?;

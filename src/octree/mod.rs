@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// The edge of a finest node in cells: 4 to 32, 8 unless chosen (the paper's level 3).
+/// The edge of a finest node in cells: 4 to 32, 8 unless chosen (level 3 of Lesar et al. 2015).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Leaf(u32);
 

@@ -49,7 +49,7 @@ twin! {
 }
 
 twin! {
-    /// Sizes, calibration, and the map from index-space to world-space covectors.
+    /// Sizes, and the map from index-space to world-space covectors.
     VolumeGrid {
         gradient_row_x: [f32; 4],
         gradient_row_y: [f32; 4],
@@ -58,9 +58,6 @@ twin! {
         ny: u32,
         nz: u32,
         levels: u32,
-        slope: f32,
-        intercept: f32,
-        pad: [f32; 2],
     }
 }
 

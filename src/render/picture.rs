@@ -150,7 +150,11 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
     )?;
 
     let mut color = run.plane("colour plane")?;
-    let window = [window.low() as f32, window.high() as f32];
+    let rescale = view.volume.rescale();
+    let window = [
+        stored(rescale, window.low()),
+        stored(rescale, window.high()),
+    ];
     window_value(run, &view.rays, window, &kind, &value, &mut color)?;
     Ok(Planes {
         color,
@@ -173,7 +177,7 @@ pub fn emission(
     termination: f64,
 ) -> Result<Planes> {
     let rescale = view.volume.rescale();
-    let knots = transfer.knots();
+    let knots = transfer.knots_within(view.volume.range());
     let values: Vec<f32> = knots.iter().map(|k| stored(rescale, k.value)).collect();
     let colors: Vec<[f32; 4]> = knots
         .iter()

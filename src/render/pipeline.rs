@@ -15,12 +15,13 @@ use super::picture::{self, View};
 use super::planes::check_room;
 use super::rays::{ray_grid, volume_grid};
 use super::twins;
-use super::variant::{Variant, voxel_cl_name};
+use super::variant::{MOST_SAMPLES, Variant, voxel_cl_name};
 
 /// How the device is used; never changes a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Pixels along x and y per work-group; `None` for [`Options::WORK_GROUP`].
+    /// Pixels along x and y per work-group; `None` for [`Options::WORK_GROUP`], or single pixels
+    /// where the device takes fewer.
     pub work_group: Option<[usize; 2]>,
 }
 
@@ -67,8 +68,13 @@ impl<'a> Renderer<'a> {
         options: Options,
     ) -> Result<Self> {
         let start = Instant::now();
-        let work_group = options.work_group.unwrap_or(Options::WORK_GROUP);
         let most = device.info().max_work_group;
+        let own_choice = if most < Options::WORK_GROUP.iter().product() {
+            [1, 1]
+        } else {
+            Options::WORK_GROUP
+        };
+        let work_group = options.work_group.unwrap_or(own_choice);
         let pixels = work_group[0].checked_mul(work_group[1]);
         if !pixels.is_some_and(|pixels| (1..=most).contains(&pixels)) {
             return Err(Error::usage(format!(
@@ -106,7 +112,7 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// The device fails or has no room, or the step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
-        check_step(&scene.sampling, self.volume)?;
+        check_step(scene, self.volume)?;
         check_room(self.device, scene.size, wanted, self.uploaded.bytes())?;
         let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
@@ -156,7 +162,7 @@ impl<'a> Renderer<'a> {
         }
         let (passes, render_ms) = timings.finish(self.device)?;
         Ok(Rendering {
-            frame: planes.read_back(self.device, scene.size, wanted)?,
+            frame: planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?,
             passes,
             build_ms: self.built.build_ms() - build_ms_before,
             upload_ms: std::mem::take(&mut self.upload_ms),
@@ -166,17 +172,27 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// Samples are counted in single precision: a ray may have at most 2^24 of them.
-fn check_step(sampling: &Sampling, volume: &Volume) -> Result<()> {
-    const MOST_SAMPLES: f64 = 16_777_216.0;
+/// Samples are counted in single precision: a ray may have at most [`MOST_SAMPLES`] of them.
+fn check_step(scene: &Scene, volume: &Volume) -> Result<()> {
+    let step_voxels = scene.sampling.step_voxels;
+    if !Sampling::STEP_VOXELS.contains(&step_voxels) {
+        return Err(Error::usage(format!(
+            "a step of {step_voxels} voxels: it must be {} to {}",
+            Sampling::STEP_VOXELS.start(),
+            Sampling::STEP_VOXELS.end()
+        )));
+    }
     let (_, radius_mm) = volume.bounding_sphere();
-    let samples = 2.0 * radius_mm / twins::step_mm(sampling, volume);
-    if samples < MOST_SAMPLES {
+    let samples_per_step = match scene.picture {
+        Picture::Emission { .. } => 2.0, // Simpson's rule takes the middle too
+        Picture::Surface { .. } | Picture::Projection { .. } => 1.0,
+    };
+    let samples = samples_per_step * 2.0 * radius_mm / twins::step_mm(&scene.sampling, volume);
+    if samples < f64::from(MOST_SAMPLES) {
         return Ok(());
     }
     Err(Error::usage(format!(
-        "a step of {} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24",
-        sampling.step_voxels
+        "a step of {step_voxels} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24"
     ))
     .hint("choose a larger --step"))
 }

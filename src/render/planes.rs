@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::{Frame, Wanted};
-use crate::gpu::{Buffer, Device, DeviceKind};
+use crate::frame::{Frame, Kind, Wanted};
+use crate::gpu::{Buffer, Device, DeviceKind, Element};
+use crate::volume::Rescale;
 
 use super::passes::Counters;
 
@@ -41,6 +42,7 @@ pub struct Planes {
     pub display: Option<Buffer<[f32; 4]>>,
     pub depth: Option<Buffer<f32>>,
     pub normal: Option<Buffer<[f32; 4]>>,
+    /// In stored units.
     pub value: Option<Buffer<f32>>,
     pub kind: Option<Buffer<u32>>,
     pub counters: Option<Counters>,
@@ -67,55 +69,66 @@ impl Planes {
             + self.other_bytes
     }
 
-    /// Waits for the passes and copies the wanted planes. A wanted layer that the picture does not
-    /// have (a dvr's depth) is filled with what "nothing" means for it.
+    /// Waits for the passes and copies the wanted planes; values become physical by `rescale`. A
+    /// wanted layer that the picture does not have (a dvr's depth) is filled with what "nothing"
+    /// means for it.
     ///
     /// # Errors
     /// The device failed.
-    pub fn read_back(&self, device: &Device, size: ImageSize, wanted: Wanted) -> Result<Frame> {
-        let pixels = size.pixels();
-        let scalar =
-            |plane: &Option<Buffer<f32>>, wanted: bool, nothing: f32| -> Result<Option<Vec<f32>>> {
-                Ok(match (wanted, plane) {
-                    (false, _) => None,
-                    (true, Some(plane)) => Some(plane.download(device)?),
-                    (true, None) => Some(vec![nothing; pixels]),
-                })
-            };
-        let normal = match (wanted.normal, &self.normal) {
-            (false, _) => None,
-            (true, Some(plane)) => {
-                let padded = plane.download(device)?;
-                Some(padded.into_iter().map(|[x, y, z, _]| [x, y, z]).collect())
+    pub fn read_back(
+        &self,
+        device: &Device,
+        size: ImageSize,
+        wanted: Wanted,
+        rescale: Rescale,
+    ) -> Result<Frame> {
+        let layers = ReadBack { device, size };
+        let nothing = Kind::Nothing as u32;
+        let kind = layers.plane(wanted.kind || wanted.value, self.kind.as_ref(), nothing)?;
+        let mut value = layers.plane(wanted.value, self.value.as_ref(), 0.0)?;
+        if let (Some(value), Some(kind)) = (&mut value, &kind) {
+            for (value, &kind) in value.iter_mut().zip(kind) {
+                if kind != nothing {
+                    *value = rescale.physical(f64::from(*value)) as f32;
+                }
             }
-            (true, None) => Some(vec![[0.0; 3]; pixels]),
-        };
-        let kind = match (wanted.kind, &self.kind) {
-            (false, _) => None,
-            (true, Some(plane)) => Some(plane.download(device)?),
-            (true, None) => Some(vec![0; pixels]),
-        };
-        let (steps, nodes) = match (wanted.counters, &self.counters) {
-            (true, Some(counters)) => (
-                Some(counters.steps.download(device)?),
-                Some(counters.nodes.download(device)?),
-            ),
-            _ => (None, None),
+        }
+        let normal = layers.plane(wanted.normal, self.normal.as_ref(), [0.0; 4])?;
+        let counter = |of: fn(&Counters) -> &Buffer<u32>| {
+            layers.plane(wanted.counters, self.counters.as_ref().map(of), 0)
         };
         Ok(Frame {
             size,
             color: self.color.download(device)?,
-            display: self
-                .display
-                .as_ref()
-                .map(|plane| plane.download(device))
-                .transpose()?,
-            depth: scalar(&self.depth, wanted.depth, f32::INFINITY)?,
-            normal,
-            value: scalar(&self.value, wanted.value, 0.0)?,
-            steps,
-            nodes,
-            kind,
+            display: layers.plane(wanted.display, self.display.as_ref(), [0.0; 4])?,
+            depth: layers.plane(wanted.depth, self.depth.as_ref(), f32::INFINITY)?,
+            normal: normal.map(|plane| plane.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()),
+            value,
+            steps: counter(|counters| &counters.steps)?,
+            nodes: counter(|counters| &counters.nodes)?,
+            kind: kind.filter(|_| wanted.kind),
+        })
+    }
+}
+
+/// The copying of planes of one size.
+struct ReadBack<'a> {
+    device: &'a Device,
+    size: ImageSize,
+}
+
+impl ReadBack<'_> {
+    /// A wanted plane, filled with `nothing` where the picture has none.
+    fn plane<T: Element>(
+        &self,
+        wanted: bool,
+        plane: Option<&Buffer<T>>,
+        nothing: T,
+    ) -> Result<Option<Vec<T>>> {
+        Ok(match (wanted, plane) {
+            (false, _) => None,
+            (true, Some(plane)) => Some(plane.download(self.device)?),
+            (true, None) => Some(vec![nothing; self.size.pixels()]),
         })
     }
 }

@@ -31,9 +31,10 @@ pub fn step_mm(sampling: &Sampling, volume: &Volume) -> f64 {
     sampling.step_voxels * volume.geometry().smallest_spacing_mm()
 }
 
-/// A physical value in the device's stored units.
+/// A physical value in the device's stored units; beyond single precision, its end.
 pub fn stored(rescale: Rescale, physical: f64) -> f32 {
-    rescale.stored(physical) as f32
+    let most = f64::from(f32::MAX);
+    rescale.stored(physical).clamp(-most, most) as f32
 }
 
 pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {

@@ -3,7 +3,9 @@
 use crate::frame::Kind;
 use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
-use crate::scene::{Filter, Phong, Refine, RefineMethod, Reflection, Sampling, Traverse};
+use crate::scene::{
+    Filter, Phong, Refine, RefineMethod, Reflection, Sampling, TransferFunction, Traverse,
+};
 use crate::volume::{Volume, VoxelType};
 
 use super::classify::Class;
@@ -107,7 +109,12 @@ pub enum ProjectionLoop {
     Local = 2,
 }
 
+/// The most samples of a ray: single precision counts no further.
+pub const MOST_SAMPLES: u32 = 1 << 24;
+
 const CONSTANTS: &[(&str, u32)] = &[
+    ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("TRANSFER_MOST_KNOTS", TransferFunction::MAX_KNOTS as u32),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
     ("KIND_CAP", Kind::Cap as u32),

@@ -74,8 +74,14 @@ pub struct Window {
 
 impl Window {
     /// # Errors
-    /// `low >= high`, or either not finite.
+    /// `low >= high`, or either beyond single precision.
     pub fn new(low: f64, high: f64) -> Result<Self> {
+        let most = f64::from(f32::MAX);
+        if low.abs().max(high.abs()) > most {
+            return Err(Error::usage(format!(
+                "the window {low:e},{high:e} reaches beyond what a picture's values can: {most:e}"
+            )));
+        }
         if !(low.is_finite() && high.is_finite() && low < high) {
             return Err(Error::usage(format!(
                 "the window {low},{high} is empty: its low end must be below its high end"

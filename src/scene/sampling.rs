@@ -18,7 +18,7 @@ pub enum Filter {
 pub enum Traverse {
     /// No hierarchy: one finest node after the other.
     Uniform,
-    /// From the root again after every node (stackless; the paper's).
+    /// From the root again after every node (stackless; Lesar et al. 2015).
     KdRestart,
     /// Up and down from the present node.
     Hierarchical,

@@ -1,6 +1,7 @@
 //! The transfer function: value to colour and opacity.
 
 use crate::error::{Error, Result};
+use crate::extent::Range;
 
 use super::Rgb;
 
@@ -24,13 +25,14 @@ impl TransferFunction {
     /// Opacity is limited to this, so that absorption stays finite.
     pub const MAX_OPACITY: f64 = 0.999_999;
     pub const MAX_KNOTS: usize = 4096;
+    pub const UNIT_LENGTH_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
     /// Knots ascending in value; two knots at the same value are a jump, the later one holding
     /// at the value itself.
     ///
     /// # Errors
     /// No knots or more than [`Self::MAX_KNOTS`]; values not finite or not ascending; colour or
-    /// opacity outside 0..1; a unit length that is not positive.
+    /// opacity outside 0..1; a unit length outside [`Self::UNIT_LENGTH_MM`].
     pub fn new(knots: Vec<Knot>, unit_length_mm: f64) -> Result<Self> {
         if knots.is_empty() || knots.len() > Self::MAX_KNOTS {
             return Err(Error::usage(format!(
@@ -39,9 +41,11 @@ impl TransferFunction {
                 knots.len()
             )));
         }
-        if !(unit_length_mm > 0.0 && unit_length_mm.is_finite()) {
+        if !Self::UNIT_LENGTH_MM.contains(&unit_length_mm) {
             return Err(Error::usage(format!(
-                "unit_length_mm = {unit_length_mm} must be positive"
+                "unit_length_mm = {unit_length_mm:e}: it must be {:e} to {:e}",
+                Self::UNIT_LENGTH_MM.start(),
+                Self::UNIT_LENGTH_MM.end()
             )));
         }
         for (i, knot) in knots.iter().enumerate() {
@@ -69,6 +73,26 @@ impl TransferFunction {
 
     pub fn knots(&self) -> &[Knot] {
         &self.knots
+    }
+
+    /// Knots of the same function on a range of values: none outside it, so that they narrow to
+    /// single precision with the values, however far the function itself reaches.
+    pub fn knots_within(&self, range: Range) -> Vec<Knot> {
+        let end = |value: f64| {
+            let (color, opacity) = self.at(value);
+            Knot {
+                value,
+                color,
+                opacity,
+            }
+        };
+        let inside = |knot: &&Knot| knot.value > range.min && knot.value <= range.max;
+        let mut knots = vec![end(range.min)];
+        knots.extend(self.knots.iter().filter(inside));
+        if knots.last().is_some_and(|last| last.value < range.max) {
+            knots.push(end(range.max));
+        }
+        knots
     }
 
     pub fn unit_length_mm(&self) -> f64 {
@@ -133,6 +157,38 @@ mod tests {
             TransferFunction::new(vec![knot(10.0, 0.0, 0.0), knot(10.0, 1.0, 1.0)], 1.0).unwrap();
         assert_eq!(tf.at(9.999).1, 0.0);
         assert_eq!(tf.at(10.0).1, 1.0);
+    }
+
+    #[test]
+    fn knots_within_a_range_are_the_same_function_there() {
+        let knots = vec![
+            knot(-1e300, 0.0, 0.0),
+            knot(10.0, 0.2, 0.1),
+            knot(20.0, 0.4, 0.3),
+            knot(20.0, 0.9, 0.8),
+            knot(1e300, 1.0, 1.0),
+        ];
+        let whole = TransferFunction::new(knots, 1.0).unwrap();
+        for (min, max) in [(0.0, 30.0), (10.0, 20.0), (12.0, 13.0), (5.0, 5.0)] {
+            let range = Range { min, max };
+            let part = TransferFunction::new(whole.knots_within(range), 1.0).unwrap();
+            assert!(part.knots().iter().all(|k| range.contains(k.value)));
+            for i in 0..=100 {
+                let value = range.at(f64::from(i) / 100.0);
+                let (a, b) = (whole.at(value), part.at(value));
+                assert!((a.1 - b.1).abs() < 1e-12, "{value}: {} {}", a.1, b.1);
+                assert!((a.0.0[0] - b.0.0[0]).abs() < 1e-12, "{value}");
+            }
+        }
+        // Another range's knots are another function beyond that range.
+        let part = whole.knots_within(Range {
+            min: 0.0,
+            max: 15.0,
+        });
+        assert_ne!(
+            TransferFunction::new(part, 1.0).unwrap().at(30.0),
+            whole.at(30.0)
+        );
     }
 
     #[test]

@@ -25,20 +25,32 @@ impl Default for Geometry {
 }
 
 impl Geometry {
+    /// The spacings with which rays can be computed.
+    pub const SPACING_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+    pub const FARTHEST_ORIGIN_MM: f64 = 1e12;
+
     /// `direction`'s columns are the world directions of the index axes; they are normalised here.
     ///
     /// # Errors
-    /// A spacing that is not positive and finite, an origin that is not finite, directions that do
-    /// not span space.
+    /// A spacing outside [`Geometry::SPACING_MM`], an origin beyond
+    /// [`Geometry::FARTHEST_ORIGIN_MM`], directions that do not span space.
     pub fn new(origin_mm: DVec3, direction: DMat3, spacing_mm: DVec3) -> Result<Self> {
-        if !spacing_mm.is_finite() || spacing_mm.min_element() <= 0.0 {
+        let [x, y, z] = spacing_mm.to_array();
+        if ![x, y, z].iter().all(|s| Self::SPACING_MM.contains(s)) {
             return Err(Error::failed(format!(
-                "the spacing {spacing_mm} mm is not positive"
+                "the spacing {x:e}, {y:e}, {z:e} mm: each must be {:e} to {:e} mm",
+                Self::SPACING_MM.start(),
+                Self::SPACING_MM.end()
             )));
         }
-        if !origin_mm.is_finite() {
+        let [x, y, z] = origin_mm.to_array();
+        if ![x, y, z]
+            .iter()
+            .all(|o| o.abs() <= Self::FARTHEST_ORIGIN_MM)
+        {
             return Err(Error::failed(format!(
-                "the origin {origin_mm} is not finite"
+                "the origin {x:e}, {y:e}, {z:e} mm: each must be at most {:e} mm from 0",
+                Self::FARTHEST_ORIGIN_MM
             )));
         }
         let columns = [direction.x_axis, direction.y_axis, direction.z_axis];

@@ -7,7 +7,7 @@ use crate::render::variant::ProjectionLoop;
 
 use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
 
-/// One physical `value` per ray, `kind` where the ray meets the volume, and the `depth` (mm from the
+/// One value per ray in stored units, `kind` where the ray meets the volume, and the `depth` (mm from the
 /// eye) at which it was found.
 #[allow(clippy::too_many_arguments)]
 pub fn cast_projection(

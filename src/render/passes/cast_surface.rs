@@ -6,7 +6,7 @@ use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
 
 use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
 
-/// Depth (mm from the eye) and physical value at the hit.
+/// Depth (mm from the eye) and value at the hit (stored units).
 pub type Layers<'a> = (&'a mut Buffer<f32>, &'a mut Buffer<f32>);
 
 /// The first point of each ray where Φ − iso changes sign: `hit_mm` from the base plane, `kind`.

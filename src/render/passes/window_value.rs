@@ -6,7 +6,7 @@ use crate::render::abi::RayGrid;
 
 use super::Run;
 
-/// The grey of each projected value between the `window`'s low and high end (physical values).
+/// The grey of each projected value between the `window`'s low and high end (stored units).
 pub fn window_value(
     run: &mut Run,
     rays: &RayGrid,

@@ -1,5 +1,5 @@
 //! Image planes: the layers of one picture, row 0 at the top, x fastest; written as files
-//! ([`write`]) and compared with each other ([`error`]).
+//! ([`write()`]) and compared with each other ([`mod@error`]).
 
 mod channel;
 pub mod error;

@@ -55,7 +55,7 @@ pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     };
     if spec.noise > 0.0 {
         truth.push_str(&format!(
-            ", plus Gaussian noise whose standard deviation is {} of the value range",
+            "; Gaussian noise with a standard deviation of {} of the value range is added",
             spec.noise
         ));
     }

@@ -1,11 +1,24 @@
 //! The error figures against hand-computed cases and against numpy and scikit-image.
 
 use angioray::extent::ImageSize;
+use angioray::frame::Frame;
 use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
-use angioray::frame::{Frame, Wanted};
 
+/// A picture in which no ray met anything, with the planes that are compared.
 fn frame(width: u32, height: u32) -> Frame {
-    Frame::nothing_hit(ImageSize::new(width, height).unwrap(), Wanted::ALL)
+    let size = ImageSize::new(width, height).unwrap();
+    let pixels = size.pixels();
+    Frame {
+        size,
+        color: vec![[0.0; 4]; pixels],
+        display: Some(vec![[0.0, 0.0, 0.0, 1.0]; pixels]),
+        depth: Some(vec![f32::INFINITY; pixels]),
+        normal: Some(vec![[0.0; 3]; pixels]),
+        value: Some(vec![0.0; pixels]),
+        steps: None,
+        nodes: None,
+        kind: None,
+    }
 }
 
 fn with_display(width: u32, height: u32, at: impl Fn(usize) -> [f32; 3]) -> Frame {
@@ -198,7 +211,13 @@ fn values_are_shares_of_the_range() {
 fn what_cannot_be_compared_is_an_error() {
     let good = with_display(4, 2, |_| [0.5; 3]);
     let other_size = with_display(2, 4, |_| [0.5; 3]);
-    let bare = Frame::nothing_hit(good.size, Wanted::default());
+    let bare = Frame {
+        display: None,
+        depth: None,
+        normal: None,
+        value: None,
+        ..good.clone()
+    };
     let compare = |a: &Frame, b: &Frame| {
         [
             color_error(a, b).err(),

@@ -1,4 +1,7 @@
-//! Every variant of every pass builds, and takes the arguments that its Rust function gives.
+//! The passes build and take the arguments that their Rust functions give: for every voxel type,
+//! filter and picture, with no layers and counters and with both; for `u8` and the linear filter
+//! also with either alone, and with an octree leaf that is no power of two. The 64-bit index, which
+//! only volumes of more than 2^32 voxels select, is left to `kernel_lint`.
 
 mod common;
 
@@ -49,21 +52,41 @@ fn pictures() -> Vec<Picture> {
     pictures
 }
 
-/// Builds and runs every pass of every picture for one voxel type; counts the launches.
-fn launches<T>(voxel: impl Fn(f64, f64, f64) -> T) -> usize
+fn layers_alone() -> Wanted {
+    Wanted {
+        counters: false,
+        ..Wanted::ALL
+    }
+}
+
+fn counters_alone() -> Wanted {
+    Wanted {
+        counters: true,
+        ..Wanted::default()
+    }
+}
+
+/// Builds and runs every pass of every picture for one voxel type, with these filters and planes;
+/// counts the launches.
+fn launches<T>(
+    leaf: Leaf,
+    filters: &[Filter],
+    outputs: &[Wanted],
+    voxel: impl Fn(f64, f64, f64) -> T,
+) -> usize
 where
     Voxels: From<Vec<T>>,
 {
     let Some(device) = common::device() else {
         return 1;
     };
-    let volume: Volume = volume_of([6, 5, 4], voxel);
-    let octree = Octree::build(&volume, Leaf::default(), &Silent).unwrap();
+    let volume: Volume = volume_of([13, 7, 4], voxel);
+    let octree = Octree::build(&volume, leaf, &Silent).unwrap();
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let mut launches = 0;
     for picture in pictures() {
-        for filter in [Filter::Linear, Filter::Nearest] {
-            for wanted in [Wanted::default(), Wanted::ALL] {
+        for &filter in filters {
+            for &wanted in outputs {
                 let mut scene = common::scene(&volume, 8, picture.clone());
                 scene.size = ImageSize::new(8, 8).unwrap();
                 scene.sampling.filter = filter;
@@ -78,6 +101,9 @@ where
                 );
                 assert_eq!(rendering.frame.display.is_some(), wanted.display);
                 assert_eq!(rendering.frame.normal.is_some(), wanted.normal);
+                assert_eq!(rendering.frame.depth.is_some(), wanted.depth);
+                assert_eq!(rendering.frame.steps.is_some(), wanted.counters);
+                assert_eq!(rendering.frame.nodes.is_some(), wanted.counters);
                 launches += rendering.passes.len();
             }
         }
@@ -85,22 +111,47 @@ where
     launches
 }
 
+const FILTERS: [Filter; 2] = [Filter::Linear, Filter::Nearest];
+
+/// Both filters, with no layers and counters, and with all.
+fn of_voxel<T>(voxel: impl Fn(f64, f64, f64) -> T) -> usize
+where
+    Voxels: From<Vec<T>>,
+{
+    let outputs = [Wanted::default(), Wanted::ALL];
+    launches(Leaf::default(), &FILTERS, &outputs, voxel)
+}
+
 #[test]
 fn u8_variants_build() {
-    assert!(launches(|x, y, z| (x + y + z) as u8) > 0);
+    assert!(of_voxel(|x, y, z| (x + y + z) as u8) > 0);
+}
+
+#[test]
+fn u8_variants_build_with_either_output_alone() {
+    let outputs = [layers_alone(), counters_alone()];
+    let sum = |x, y, z| (x + y + z) as u8;
+    assert!(launches(Leaf::default(), &[Filter::Linear], &outputs, sum) > 0);
+}
+
+#[test]
+fn u8_variants_build_with_a_leaf_of_five_cells() {
+    let leaf = Leaf::new(5).unwrap();
+    let sum = |x, y, z| (x + y + z) as u8;
+    assert!(launches(leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
 }
 
 #[test]
 fn u16_variants_build() {
-    assert!(launches(|x, y, z| (x + y + z) as u16) > 0);
+    assert!(of_voxel(|x, y, z| (x + y + z) as u16) > 0);
 }
 
 #[test]
 fn i16_variants_build() {
-    assert!(launches(|x, y, z| (x + y - z) as i16) > 0);
+    assert!(of_voxel(|x, y, z| (x + y - z) as i16) > 0);
 }
 
 #[test]
 fn f32_variants_build() {
-    assert!(launches(|x, y, z| (x + y + z) as f32 * 0.5) > 0);
+    assert!(of_voxel(|x, y, z| (x + y + z) as f32 * 0.5) > 0);
 }

@@ -1,4 +1,7 @@
 //! OpenEXR: one scanline part, 32-bit float, ZIP, the metadata as string attributes.
+//!
+//! The program's version is the attribute `angioray.version`, because OpenEXR reserves the name
+//! `version` for an integer; reading the metadata gives it back as `version`.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -20,7 +23,7 @@ use crate::extent::ImageSize;
 
 use super::channel::Channel;
 
-/// Put before a key that EXR keeps for itself (`version` is the version of its deep data).
+/// Put before a key that is the name of one of OpenEXR's own attributes, and taken off on reading.
 const PREFIX: &str = "angioray.";
 
 /// Where the attributes start: after the magic number and the version field.

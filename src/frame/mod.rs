@@ -57,24 +57,6 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A picture in which no ray met anything, with the planes that `wanted` names.
-    pub fn nothing_hit(size: ImageSize, wanted: Wanted) -> Self {
-        fn plane<T: Clone>(wanted: bool, entry: T, size: ImageSize) -> Option<Vec<T>> {
-            wanted.then(|| vec![entry; size.pixels()])
-        }
-        Self {
-            size,
-            color: vec![[0.0; 4]; size.pixels()],
-            display: plane(wanted.display, [0.0, 0.0, 0.0, 1.0], size),
-            depth: plane(wanted.depth, f32::INFINITY, size),
-            normal: plane(wanted.normal, [0.0; 3], size),
-            value: plane(wanted.value, 0.0, size),
-            steps: plane(wanted.counters, 0, size),
-            nodes: plane(wanted.counters, 0, size),
-            kind: plane(wanted.kind, Kind::Nothing as u32, size),
-        }
-    }
-
     /// That every plane has one entry per pixel.
     ///
     /// # Errors

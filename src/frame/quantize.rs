@@ -44,7 +44,6 @@ fn nearest_level(v: f32, top: u16) -> u16 {
 mod tests {
     use super::*;
     use crate::extent::ImageSize;
-    use crate::frame::Wanted;
 
     #[test]
     fn every_level_comes_back_and_halves_go_to_the_nearest() {
@@ -80,9 +79,17 @@ mod tests {
 
     #[test]
     fn channels_interleave_high_byte_first() {
-        let size = ImageSize::new(1, 1).unwrap();
-        let mut frame = Frame::nothing_hit(size, Wanted::ALL);
-        frame.display = Some(vec![[1.0, 0.5, (258.0 / 65535.0) as f32, 1.0]]);
+        let mut frame = Frame {
+            size: ImageSize::new(1, 1).unwrap(),
+            color: vec![[0.0; 4]],
+            display: Some(vec![[1.0, 0.5, (258.0 / 65535.0) as f32, 1.0]]),
+            depth: None,
+            normal: None,
+            value: None,
+            steps: None,
+            nodes: None,
+            kind: None,
+        };
         assert_eq!(rgb8(&frame).unwrap(), [255, 128, 1]);
         assert_eq!(
             rgb16_big_endian(&frame).unwrap(),

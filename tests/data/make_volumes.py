@@ -1,4 +1,4 @@
-"""Writes the fixtures of tests/readers.rs into tests/data/volumes with the formats' own programs.
+"""Writes the fixtures of tests/readers/ into tests/data/volumes with the formats' own programs.
 
     python3 -m venv VENV && VENV/bin/pip install SimpleITK nibabel pynrrd numpy
     VENV/bin/python tests/data/make_volumes.py
@@ -8,7 +8,7 @@ Every volume is the same ramp, 5 x 4 x 3 voxels:
     voxel(x, y, z) = x + 10 y + 100 z + offset,   frame t of a series: + 1000 t (or + 1 t in u8)
 
 so that a swapped axis, byte or frame cannot go unseen. What a fixture is for is said where it is
-made; what it must read as is said in tests/readers.rs. Written by SimpleITK 2.5, nibabel 5.4,
+made; what it must read as is said in tests/readers/. Written by SimpleITK 2.5, nibabel 5.4,
 pynrrd 1.1, numpy 2.4; headers that none of them can write (skips, lists, patterns) are spelled out
 here in the formats' own words.
 """

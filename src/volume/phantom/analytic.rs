@@ -25,7 +25,7 @@ pub(super) fn sphere(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         (0.5 - beyond_mm / (2.0 * ramp_mm)).clamp(0.0, 1.0)
     })?;
     let truth = format!(
-        "clamp(1/2 - (|p| - R) / (2 w), 0, 1) with R = {radius_mm} mm and w = {ramp_mm} mm: the isosurface at the middle value is the sphere of radius R"
+        "the field is clamp(1/2 - (|p| - R) / (2 w), 0, 1) with R = {radius_mm} mm and w = {ramp_mm} mm, so that its isosurface at 1/2 is the sphere of radius R"
     );
     Ok((voxels, truth))
 }
@@ -43,9 +43,9 @@ pub(super) fn slab(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let p = position_mm(spec, index)[axis];
         ((p + h).min(half_mm) - (p - h).max(-half_mm)).max(0.0) / (2.0 * h)
     })?;
+    let name = ["x", "y", "z"][axis];
     let truth = format!(
-        "the share of [p - {h}, p + {h}] mm along {} that lies in [-T/2, T/2], T = {thickness_mm} mm: the isosurfaces at the middle value are its two faces, and the field's integral along the axis is T",
-        ["x", "y", "z"][axis]
+        "the field is clamp((min({name} + h, T/2) - max({name} - h, -T/2)) / (2 h), 0, 1) with T = {thickness_mm} mm and h = {h} mm, so that its integral along {name} is T and its isosurfaces at 1/2 are, for T >= 2 h, the faces {name} = -T/2 and T/2"
     );
     Ok((voxels, truth))
 }
@@ -63,7 +63,7 @@ pub(super) fn ramp(spec: &PhantomSpec) -> Result<(Voxels, String)> {
     };
     let voxels = sampled(spec, |[i, _, _]| f64::from(i) * step / width)?;
     let truth = format!(
-        "the value is {} + {step} i for the voxel's index i along x",
+        "the voxel with index i along x has the value {} + {step} i",
         spec.values().min
     );
     Ok((voxels, truth))
@@ -75,7 +75,7 @@ pub(super) fn blob(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let p = position_mm(spec, index) / sigma_mm;
         (-0.5 * p.length_squared()).exp()
     })?;
-    let truth = format!("exp(-|p|^2 / (2 s^2)) with s = {sigma_mm} mm");
+    let truth = format!("the field is exp(-|p|^2 / (2 s^2)) with s = {sigma_mm} mm");
     Ok((voxels, truth))
 }
 
@@ -91,7 +91,7 @@ pub(super) fn marschner_lobb(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let rings = (TAU * FREQUENCY * (PI / 2.0 * p.truncate().length()).cos()).cos();
         (1.0 - (PI / 2.0 * p.z).sin() + ALPHA * (1.0 + rings)) / (2.0 * (1.0 + ALPHA))
     })?;
-    let truth = "the signal of Marschner and Lobb (1994) with f_M = 6 and alpha = 0.25 on [-1, 1]^3, the first and last voxel of each axis at -1 and 1".into();
+    let truth = "the field is the signal of Marschner and Lobb (1994) with f_M = 6 and alpha = 0.25, on [-1, 1]^3 from the first voxel of each axis to the last".into();
     Ok((voxels, truth))
 }
 
@@ -100,6 +100,6 @@ pub(super) fn voxel(spec: &PhantomSpec) -> Result<(Voxels, String)> {
     let centre = spec.dims.array().map(|n| n / 2);
     let voxels = sampled(spec, |index| if index == centre { 1.0 } else { 0.0 })?;
     let [i, j, k] = centre;
-    let truth = format!("1 at voxel ({i}, {j}, {k}) and 0 at all others");
+    let truth = format!("the field is 1 at voxel ({i}, {j}, {k}) and 0 at all others");
     Ok((voxels, truth))
 }

@@ -23,8 +23,8 @@ pub struct Phantom {
     pub volume: Volume,
     /// Centrelines and radii, of [`PhantomKind::Vessels`] only.
     pub tree: Option<VesselTree>,
-    /// The field in words, from 0 to 1 (before noise and rounding); p is mm from the volume's
-    /// centre.
+    /// One statement of the field, from 0 to 1, or of the values, before noise and rounding;
+    /// p = (x, y, z) is mm from the volume's centre.
     pub truth: String,
 }
 
@@ -55,7 +55,7 @@ pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     };
     if spec.noise > 0.0 {
         truth.push_str(&format!(
-            "; with Gaussian noise of standard deviation {}",
+            "; Gaussian noise with a standard deviation of {} of the value range is added",
             spec.noise
         ));
     }

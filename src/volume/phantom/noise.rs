@@ -32,14 +32,15 @@ pub(super) fn white(spec: &PhantomSpec) -> Result<(Voxels, String)> {
     }
     let voxels = with_type!(spec.voxel_type, T => of_type::<T>(spec))?;
     let truth = format!(
-        "independent uniform values from 0 to 1 (PCG64, seed {})",
+        "the field is an independent, uniformly distributed number from 0 to 1 at every voxel (PCG64, seed {})",
         spec.seed
     );
     Ok((voxels, truth))
 }
 
-/// Adds Gaussian noise of `spec.noise` times the value range (nothing, where that is 0); slice k draws from the generator's
-/// stretch that begins (k + 1) · 2^64 draws on, out of reach of all other draws.
+/// Adds Gaussian noise of `spec.noise` times the value range (nothing, where that is 0); slice k
+/// draws from the generator's stretch that begins (k + 1) · 2^64 draws on, out of reach of all
+/// other draws.
 pub(super) fn add_gaussian<T: Stored>(spec: &PhantomSpec, voxels: &mut [T]) {
     if spec.noise == 0.0 {
         return;

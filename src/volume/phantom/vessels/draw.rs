@@ -107,7 +107,7 @@ pub(in super::super) fn draw(spec: &PhantomSpec, tree: &VesselTree) -> Result<(V
         .filter_map(|piece| reach(spec, &piece).map(|reach| (piece, reach)))
         .collect();
     let voxels = with_type!(spec.voxel_type, T => draw_type::<T>(spec, &pieces))?;
-    let truth = "the share of the voxel's footprint, a disc of its cross-section's area, that the tube around the nearest centreline covers: the area of two discs' lens".into();
+    let truth = "the field is the share of the voxel's cross-section, taken as a disc of equal area, that lies inside the tube around the nearest centreline".into();
     Ok((voxels, truth))
 }
 

@@ -1,11 +1,14 @@
 //! Volume files written by SimpleITK, nibabel, pynrrd and NumPy (tests/data/make_volumes.py), read
 //! and compared with what was put in: the ramp's formula and the geometry, in LPS.
 
+mod arrays;
+mod images;
+
 use std::path::{Path, PathBuf};
 
 use angioray::error::ErrorKind;
 use angioray::progress::Silent;
-use angioray::volume::{RawLayout, ReadOptions, Volume, VoxelType, read};
+use angioray::volume::{ReadOptions, Volume, VoxelType, read};
 use glam::{DAffine3, DMat3, DVec3};
 
 const SPACING: DVec3 = DVec3::new(0.5, 0.75, 2.0);
@@ -173,75 +176,6 @@ fn every_number_type_of_every_format() {
 }
 
 #[test]
-fn nrrd_encodings_byte_orders_and_skips() {
-    let spaced = Expected::ramp(DMat3::IDENTITY, SPACING, DVec3::ZERO);
-    for name in [
-        "pynrrd_raw.nrrd",
-        "pynrrd_gzip.nrrd",
-        "pynrrd_bzip2.nrrd",
-        "pynrrd_ascii.nrrd",
-        "pynrrd_raw_big.nrrd",
-        "pynrrd_gzip_big.nrrd",
-        "pynrrd_bzip2_big.nrrd",
-        "pynrrd_detached.nhdr",
-    ] {
-        spaced.check(name);
-    }
-    for name in [
-        "skip.nhdr",
-        "from_end.nhdr",
-        "skip_gz.nhdr",
-        "list.nhdr",
-        "pattern.nhdr",
-        "crlf.nrrd",
-    ] {
-        Expected::nowhere().check(name);
-    }
-    Expected::nowhere()
-        .of(VoxelType::F32, 0.25)
-        .check("pynrrd_ascii_f32.nrrd");
-    Expected::nowhere()
-        .of(VoxelType::F32, -0.125)
-        .check("pynrrd_f64_big.nrrd");
-}
-
-#[test]
-fn nrrd_geometry_is_in_lps() {
-    Expected::placed(oblique()).check("sitk_oblique.nrrd");
-    Expected::placed(oblique()).check("sitk_detached.nhdr");
-    Expected::placed(LEFT_HANDED).check("sitk_left_handed.nrrd");
-    Expected::placed(oblique()).check("pynrrd_scanner-xyz.nrrd");
-    let mirrored = |signs: DVec3| {
-        Expected::ramp(
-            DMat3::from_diagonal(signs) * oblique(),
-            SPACING,
-            signs * ORIGIN,
-        )
-    };
-    mirrored(DVec3::new(-1.0, -1.0, 1.0)).check("pynrrd_right-anterior-superior.nrrd");
-    mirrored(DVec3::new(1.0, -1.0, 1.0)).check("pynrrd_left-anterior-superior.nrrd");
-}
-
-#[test]
-fn metaimage_variants() {
-    for name in ["sitk_oblique.mha", "sitk_detached.mhd", "sitk_packed.mhd"] {
-        Expected::placed(oblique()).check(name);
-    }
-    Expected::placed(LEFT_HANDED).check("sitk_left_handed.mha");
-    for name in [
-        "big.mha",
-        "big_packed.mha",
-        "list.mhd",
-        "pattern.mhd",
-        "from_end.mhd",
-        "skip.mhd",
-        "ascii.mha",
-    ] {
-        Expected::placed(DMat3::IDENTITY).check(name);
-    }
-}
-
-#[test]
 fn flat_images_are_volumes_of_one_slice() {
     let flat = Expected {
         dims: [5, 4, 1],
@@ -259,63 +193,6 @@ fn flat_images_are_volumes_of_one_slice() {
         ..flat
     }
     .check("np_flat.npy");
-}
-
-#[test]
-fn nifti_geometry_from_sform_qform_or_neither() {
-    for name in [
-        "sitk_oblique.nii",
-        "nib_both.nii",
-        "nib_meter.nii",
-        "nib_micron.nii",
-    ] {
-        Expected::placed(oblique()).check(name);
-    }
-    for name in ["sitk_left_handed.nii.gz", "nib_qform.nii"] {
-        Expected::placed(LEFT_HANDED).check(name);
-    }
-    let sheared = DMat3::from_cols(
-        DVec3::new(-2.0, 0.0, 0.0),
-        DVec3::new(-1.0, -2.0, 0.0),
-        DVec3::new(0.0, 0.0, 3.0),
-    );
-    Expected::ramp(sheared, DVec3::ONE, DVec3::ZERO).check("nib_sheared.nii");
-    Expected::ramp(DMat3::IDENTITY, SPACING, DVec3::ZERO).check("nib_uncoded.nii");
-}
-
-#[test]
-fn a_nifti_pair_is_found_from_either_part() {
-    for name in [
-        "nib_pair.hdr",
-        "nib_pair.img",
-        "nib_pair_gz.hdr.gz",
-        "nib_pair_gz.img.gz",
-    ] {
-        Expected::placed(oblique()).check(name);
-    }
-}
-
-#[test]
-fn slope_and_intercept_make_physical_values() {
-    let physical = |name: &str, stored: f64| {
-        let volume = read_fixture(name, &ReadOptions::default());
-        let index = (0..60).find(|&i| {
-            let [x, y, z] = [i % 5, i / 5 % 4, i / 20];
-            (x + 10 * y + 100 * z) as f64 + 20.0 == stored
-        });
-        let value = volume.voxels().stored(index.unwrap());
-        (volume.rescale().physical(value), volume.range())
-    };
-    let (value, range) = physical("slope_rising.nii", 132.0);
-    assert_eq!(value, 2.0 * 132.0 - 1024.0);
-    assert_eq!((range.min, range.max), (-984.0, 2.0 * 254.0 - 1024.0));
-    let (value, range) = physical("slope_falling.nii", 132.0);
-    assert_eq!(value, 3.0 - 66.0);
-    assert_eq!((range.min, range.max), (3.0 - 127.0, 3.0 - 10.0));
-    // A slope of 0 is none at all.
-    assert_eq!(physical("slope_none.nii", 132.0).0, 132.0);
-    let rising = read_fixture("slope_rising.nii", &ReadOptions::default());
-    assert_eq!(rising.voxels().voxel_type(), VoxelType::U8);
 }
 
 #[test]
@@ -349,80 +226,6 @@ fn frames_are_picked_wherever_their_axis_stands() {
     }
     let error = read(&fixture("sitk_u8.nrrd"), &frame(1), &Silent).unwrap_err();
     assert!(error.to_string().contains("one volume"), "{error}");
-}
-
-#[test]
-fn numpy_orders_versions_and_archives() {
-    for name in [
-        "np_big.npy",
-        "np_fortran.npy",
-        "np_version2.npy",
-        "np_version3.npy",
-        "np_stored.npz",
-        "np_several.npz",
-    ] {
-        Expected::nowhere().check(name);
-    }
-    let f32_ramp = Expected::nowhere().of(VoxelType::F32, 0.25);
-    f32_ramp.check("np_packed.npz");
-    let several = read_fixture("np_several.npz", &ReadOptions::default());
-    assert!(
-        several
-            .notes()
-            .join("\n")
-            .contains("3 arrays 'volume' is read")
-    );
-
-    // Half precision keeps 11 bits: quarters are exact up to 512.
-    let half = read_fixture("np_f16.npy", &ReadOptions::default());
-    assert_eq!(half.voxels().stored(59), 234.25);
-    assert_eq!(half.voxels().voxel_type(), VoxelType::F32);
-    let mask = read_fixture("np_bool.npy", &ReadOptions::default());
-    assert_eq!(mask.voxels().voxel_type(), VoxelType::U8);
-    assert_eq!(
-        (mask.voxels().stored(20), mask.voxels().stored(21)),
-        (0.0, 1.0)
-    );
-}
-
-#[test]
-fn headerless_files_by_name_or_by_flags() {
-    Expected::nowhere()
-        .of(VoxelType::U16, 60_000.0)
-        .check("ramp_5x4x3_uint16be.raw");
-    Expected::nowhere().check("ramp_5x4x3_int16.raw.gz");
-    let described = ReadOptions {
-        raw: RawLayout {
-            size: Some("5x4x3".parse().unwrap()),
-            element: Some("i16".parse().unwrap()),
-            spacing_mm: Some(SPACING),
-            offset_bytes: Some(4),
-        },
-        ..ReadOptions::default()
-    };
-    Expected::ramp(DMat3::IDENTITY, SPACING, DVec3::ZERO).check_with("ramp.bin", &described);
-
-    // A flag wins over the name.
-    let mut half = ReadOptions::default();
-    half.raw.size = Some("5x4x1".parse().unwrap());
-    let volume = read_fixture("ramp_5x4x3_uint16be.raw", &half);
-    assert_eq!(volume.dims().array(), [5, 4, 1]);
-    assert!(
-        volume.notes().join("\n").contains("80 bytes after"),
-        "{:?}",
-        volume.notes()
-    );
-
-    let mut incomplete = described;
-    incomplete.raw.element = None;
-    let error = read(&fixture("ramp.bin"), &incomplete, &Silent).unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Usage);
-    assert!(error.hint_text().unwrap().contains("--raw-type"));
-    let mut short = described;
-    short.raw.offset_bytes = Some(5);
-    assert!(read(&fixture("ramp.bin"), &short, &Silent).is_err());
-    short.raw.offset_bytes = Some(u64::MAX);
-    assert!(read(&fixture("ramp.bin"), &short, &Silent).is_err());
 }
 
 #[test]

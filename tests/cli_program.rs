@@ -448,3 +448,58 @@ fn one_scene_file_serves_several_commands() {
     place.write("work.toml", "work-group = [4, 4]\ndevice = 'reference'\n");
     place.refused("render slab.nrrd -o w2.exr --size 4 --scene work.toml", 2);
 }
+
+#[test]
+fn a_negative_number_reaches_its_flag() {
+    let place = Place::with_ball();
+    let said = |command: &str, flag: &str| {
+        stderr(&place.run(&format!("{command} {flag} -1 --device reference")))
+    };
+    let render = "render ball.nrrd -o a.png";
+    for flag in [
+        "--size",
+        "--fov",
+        "--ortho",
+        "--zoom",
+        "--termination",
+        "--ambient",
+        "--diffuse",
+        "--specular",
+        "--shininess",
+        "--step",
+        "--contrast",
+        "--gamma",
+        "--frame",
+        "--smooth",
+        "--raw-size",
+        "--raw-spacing",
+        "--raw-offset",
+        "--octree-leaf",
+        "--bit-depth",
+        "--quality",
+        "--work-group",
+        "--color",
+        "--background",
+    ] {
+        let said = said(render, flag);
+        assert!(
+            said.contains("-1") && !said.contains("unexpected"),
+            "{said}"
+        );
+    }
+    for flag in [
+        "--size",
+        "--spacing",
+        "--seed",
+        "--radius",
+        "--tip-radius",
+        "--noise",
+    ] {
+        let line = format!("phantom vessels -o v.nrrd {flag} -1");
+        let said = place.refused(&line, 2);
+        assert!(!said.contains("unexpected"), "{said}");
+    }
+    assert!(said(render, "--zoom").contains("a zoom of -1 is out of its domain"));
+    // The control: where no number belongs it is unexpected.
+    assert!(said(render, "--skip").contains("unexpected"));
+}

@@ -25,11 +25,11 @@ group! {
         aov: Layers,
 
         /// Bits per channel of a .png: 8 or 16 [default: 8]
-        #[arg(long, value_name = "8|16")]
+        #[arg(long, value_name = "8|16", allow_hyphen_values = true)]
         bit_depth: Bits,
 
         /// Quality of a .jpg, 1 to 100 [default: 92]
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
         quality: u8,
 
         /// Write what was rendered and how long it took as JSON

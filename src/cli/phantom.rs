@@ -50,11 +50,11 @@ group! {
         output: FilePath,
 
         /// Voxels along each axis [default: 128; 41 for marschner-lobb]
-        #[arg(long, value_name = "N|NXxNYxNZ")]
+        #[arg(long, value_name = "N|NXxNYxNZ", allow_hyphen_values = true)]
         size: GridSize,
 
         /// Voxel spacing in mm [default: 1]
-        #[arg(long, value_name = "S|SX,SY,SZ")]
+        #[arg(long, value_name = "S|SX,SY,SZ", allow_hyphen_values = true)]
         spacing: SpacingMm,
 
         /// Voxel type: u8, u16, i16 or f32 [default: u8]
@@ -63,7 +63,7 @@ group! {
         voxel_type: VoxelName,
 
         /// Decides the vessel tree and all noise [default: 1]
-        #[arg(long, value_name = "S")]
+        #[arg(long, value_name = "S", allow_hyphen_values = true)]
         seed: u64,
 
         /// Standard deviation of noise added to every voxel, as a share of the value range

@@ -58,8 +58,10 @@ impl RenderArguments {
         let volume_files = volume_files.iter().map(PathBuf::as_path);
         let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(volume_files).collect();
         files.check(&inputs)?;
-        // The scene that is stored renders the same volume from wherever it is read.
+        // The scene that is stored renders the same volume from wherever it is read, in the same
+        // way.
         options.volume.volume = Some(FilePath(absolute(&source.path)));
+        options.volume.octree_leaf = Some(source.leaf.edge());
         let engine = Engine::open(&device)?;
 
         let bars = Bars::new();

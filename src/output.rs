@@ -10,6 +10,18 @@ use crate::error::{Error, Result};
 
 const BUFFER_BYTES: usize = 1 << 18;
 
+/// That [`write_atomically`] can write `path`, as far as can be told without writing it: a
+/// temporary file is made in its folder and dropped. For knowing it before hours of work.
+///
+/// # Errors
+/// In the words of [`write_atomically`].
+pub fn check_writable(path: &Path) -> Result<()> {
+    match destination(path)? {
+        Destination::Special => Ok(()),
+        Destination::File { target, .. } => temporary_beside(path, &target).map(drop),
+    }
+}
+
 /// Writes `path` by `fill`ing a temporary file in the same folder, which then takes its name: a
 /// reader sees the old file or the whole new one, and a failure leaves nothing behind.
 ///
@@ -24,30 +36,64 @@ pub fn write_atomically(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
 ) -> Result<()> {
+    match destination(path)? {
+        Destination::Special => pour(path, fill),
+        Destination::File {
+            target,
+            permissions,
+        } => replace(path, &target, permissions, fill),
+    }
+}
+
+/// Where the bytes for a path go.
+enum Destination {
+    /// A device or a pipe.
+    Special,
+    /// Behind symbolic links; with the permissions of the file that is there, if one is.
+    File {
+        target: PathBuf,
+        permissions: Option<fs::Permissions>,
+    },
+}
+
+fn destination(path: &Path) -> Result<Destination> {
+    let refused = |why: &str| Error::failed(format!("{}: cannot write: {why}", path.display()));
+    let is_folder = || refused("this is a folder").hint("name a file in it");
+    if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(is_folder());
+    }
     match fs::metadata(path) {
-        Ok(old) if old.is_dir() => Err(Error::failed(format!(
-            "{}: cannot write: this is a folder",
-            path.display()
-        ))
-        .hint("name a file in it")),
-        Ok(old) if !old.is_file() => pour(path, fill),
-        Ok(old) => replace(path, Some(old.permissions()), fill),
-        Err(_) => replace(path, None, fill),
+        Ok(old) if old.is_dir() => Err(is_folder()),
+        Ok(old) if !old.is_file() => Ok(Destination::Special),
+        Ok(old) => Ok(Destination::File {
+            target: match path.is_symlink() {
+                true => fs::canonicalize(path).map_err(|cause| refused(&cause.to_string()))?,
+                false => path.to_owned(),
+            },
+            permissions: Some(old.permissions()),
+        }),
+        Err(_) if path.is_symlink() => Err(refused(
+            "this is a symbolic link to a file that is not there",
+        )
+        .hint("remove the link, or name its target")),
+        Err(cause) if cause.kind() == io::ErrorKind::InvalidFilename => {
+            Err(refused("its name is too long"))
+        }
+        Err(_) => Ok(Destination::File {
+            target: path.to_owned(),
+            permissions: None,
+        }),
     }
 }
 
 fn replace(
     path: &Path,
+    target: &Path,
     permissions: Option<fs::Permissions>,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
 ) -> Result<()> {
     let failed = |cause: io::Error| Error::io(path, "write", &cause);
-    let target = if path.is_symlink() {
-        fs::canonicalize(path).map_err(failed)?
-    } else {
-        path.to_owned()
-    };
-    let (file, temporary) = temporary_beside(path, &target)?;
+    let (file, temporary) = temporary_beside(path, target)?;
     let file = filled(path, file, fill)?;
     if let Some(permissions) = permissions {
         file.set_permissions(permissions).map_err(failed)?;
@@ -56,7 +102,7 @@ fn replace(
     file.sync_data().map_err(failed)?;
     drop(file);
     temporary
-        .persist(&target)
+        .persist(target)
         .map_err(|refused| failed(refused.error))
 }
 
@@ -107,7 +153,7 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
             path.display(),
             refusal(&folder, &cause)
         ));
-        if cause.kind() == io::ErrorKind::NotFound {
+        if cause.kind() == io::ErrorKind::NotFound && !folder.exists() {
             error.hint(format!("make it first: mkdir -p '{}'", folder.display()))
         } else {
             error
@@ -119,7 +165,10 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
 fn refusal(folder: &Path, cause: &io::Error) -> String {
     let folder_name = folder.display();
     match cause.kind() {
-        io::ErrorKind::NotFound => format!("there is no folder '{folder_name}'"),
+        io::ErrorKind::NotFound if !folder.exists() => {
+            format!("there is no folder '{folder_name}'")
+        }
+        io::ErrorKind::NotFound => format!("the folder '{folder_name}' takes no files"),
         io::ErrorKind::NotADirectory => format!("'{folder_name}' is not a folder"),
         io::ErrorKind::PermissionDenied => {
             format!("no permission to make files in '{folder_name}'")
@@ -189,6 +238,8 @@ mod tests {
             (root.join("file/a.txt"), "is not a folder"),
             (root.join("sub"), "this is a folder"),
             (root.join(".."), "this is a folder"),
+            (root.join("new/"), "this is a folder"),
+            (root.join("n".repeat(300)), "too long"),
             (PathBuf::new(), "names no file"),
         ];
         for (path, cause) in cases {
@@ -198,7 +249,11 @@ mod tests {
             assert!(said.contains(path.to_str().unwrap()), "{said}");
             assert!(!said.contains('\n'), "{said}");
             assert_eq!(error.exit_code(), 1);
+            assert_eq!(check_writable(&path).unwrap_err(), error);
         }
+        // The control: elsewhere the check passes, and leaves nothing.
+        check_writable(&root.join("file")).unwrap();
+        check_writable(&root.join("sub/a.txt")).unwrap();
         assert_eq!(names_in(root), ["file", "sub"]);
         assert!(names_in(&root.join("sub")).is_empty());
     }
@@ -233,6 +288,19 @@ mod tests {
         write_text(&link, "new").unwrap();
         assert!(link.is_symlink());
         assert_eq!(fs::read_to_string(&real).unwrap(), "new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_not_called_missing() {
+        let said = |path: &str| check_writable(Path::new(path)).unwrap_err();
+        let proc = said("/proc/a.png");
+        assert!(proc.to_string().contains("takes no files"), "{proc}");
+        assert_eq!(proc.hint_text(), None);
+        // The control.
+        let missing = said("/proc/none/a.png");
+        assert!(missing.to_string().contains("no folder"), "{missing}");
+        assert!(missing.hint_text().is_some());
     }
 
     #[cfg(target_os = "linux")]

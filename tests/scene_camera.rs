@@ -145,7 +145,143 @@ fn an_eye_is_taken_as_it_is() {
     assert!(c.forward().distance(forward) < 1e-12);
     assert!(c.right().distance(forward.cross(DVec3::X).normalize()) < 1e-12);
     assert_eq!(c.lens(), Lens::Perspective { fov_deg: 40.0 });
-    // Straight down without an up: the patient's front is up.
-    let down = camera(&["--eye", "1,2,50"]);
-    assert!(down.up().distance(DVec3::NEG_Y) < 1e-12);
+}
+
+#[test]
+fn straight_from_above_and_below_an_eye_is_as_the_view() {
+    for (eye, view, other) in [
+        ("1,2,50", "superior", "inferior"),
+        ("1,2,-50", "inferior", "superior"),
+    ] {
+        let up = camera(&["--eye", eye]).up();
+        assert!(
+            up.distance(camera(&["--view", view]).up()) < 1e-12,
+            "{view}"
+        );
+        // The control.
+        assert!(up.distance(camera(&["--view", other]).up()) > 1.0);
+    }
+    // A little aside the head is up.
+    assert!(camera(&["--eye", "1,2.1,50"]).up().z > 0.0);
+}
+
+fn close(a: &Camera, b: &Camera) -> bool {
+    let (Lens::Perspective { fov_deg: a_deg }, Lens::Perspective { fov_deg: b_deg }) =
+        (a.lens(), b.lens())
+    else {
+        return a.lens() == b.lens() && a.eye_world().distance(b.eye_world()) < 1e-9;
+    };
+    a.eye_world().distance(b.eye_world()) < 1e-9
+        && a.up().distance(b.up()) < 1e-12
+        && a.forward().distance(b.forward()) < 1e-12
+        && (a_deg - b_deg).abs() < 1e-9
+}
+
+#[test]
+fn an_eye_is_turned_and_zoomed_like_a_view() {
+    // The anterior view's eye, 40 mm before the centre.
+    let eye = ["--eye", "1,-38,3", "--fov", "40"];
+    let with = |more: &[&str]| camera(&[&eye[..], more].concat());
+    // Twice the magnification halves the half-angle's tangent.
+    let halved = 2.0 * (20f64.to_radians().tan() / 2.0).atan().to_degrees();
+    let zoomed = with(&["--zoom", "2"]);
+    let narrow = camera(&["--eye", "1,-38,3", "--fov", &halved.to_string()]);
+    assert!(close(&zoomed, &narrow));
+    assert!(!close(&zoomed, &with(&[])));
+    let ortho = camera(&["--eye", "1,-38,3", "--ortho", "30", "--zoom", "3"]);
+    assert_eq!(ortho.lens(), Lens::Orthographic { height_mm: 10.0 });
+    // A quarter clockwise: the patient's left is up.
+    assert!(close(&with(&["--roll", "90"]), &with(&["--up", "1,0,0"])));
+    assert!(!close(&with(&["--roll", "-90"]), &with(&["--up", "1,0,0"])));
+    // The eye goes about the target, as from the view that it stands at.
+    let left = camera(&["--eye", "41,2,3", "--fov", "40"]);
+    assert!(close(&with(&["--azimuth", "90"]), &left));
+    let above = camera(&["--eye", "1,2,43", "--up", "0,1,0", "--fov", "40"]);
+    assert!(close(&with(&["--elevation", "90"]), &above));
+    assert!(!close(&with(&["--elevation", "-90"]), &above));
+    // An eye with an up of its own turns about that.
+    let tilted = with(&["--up", "1,0,0", "--azimuth", "90"]);
+    assert!(tilted.eye_world().distance(DVec3::new(1.0, 2.0, -37.0)) < 1e-9);
+}
+
+#[test]
+fn a_flag_over_a_stored_scene_turns_and_zooms_its_eye() {
+    let stored = resolved(&["--view", "left", "--azimuth", "20", "--fov", "40"]).options;
+    let over = |line: &[&str]| {
+        let words = std::iter::once("angioray").chain(line.iter().copied());
+        let flags = Flags::try_parse_from(words).unwrap().options;
+        flags
+            .over(stored.clone())
+            .resolve(&SUBJECT)
+            .unwrap()
+            .scene
+            .camera
+    };
+    let fresh = |line: &[&str]| {
+        let all = [&["--view", "left", "--azimuth", "20", "--fov", "40"], line].concat();
+        camera(&all)
+    };
+    for line in [
+        &["--zoom", "1.5"],
+        &["--roll", "30"],
+        &["--elevation", "25"],
+    ] {
+        assert!(close(&over(line), &fresh(line)), "{line:?}");
+        // The control: the flag does something.
+        assert!(!close(&over(line), &over(&[])), "{line:?}");
+    }
+    let further = camera(&["--view", "left", "--azimuth", "30", "--fov", "40"]);
+    assert!(close(&over(&["--azimuth", "10"]), &further));
+    // A view replaces the eye.
+    for line in [&["--view", "right"], &["--carm", "LAO 40"]] {
+        let replaced = camera(&[&["--fov", "40"], &line[..]].concat());
+        assert!(close(&over(line), &replaced), "{line:?}");
+    }
+}
+
+#[test]
+fn an_orthographic_eye_plane_clears_the_volume_about_any_target() {
+    let clearance = |target: DVec3| {
+        let text = format!("{},{},{}", target.x, target.y, target.z);
+        let c = camera(&["--ortho", "20", "--target", &text]);
+        (SUBJECT.center_world - c.eye_world()).dot(c.forward()) - SUBJECT.radius_mm
+    };
+    for behind_mm in [0.0, 50.0, 1e6] {
+        let target = SUBJECT.center_world + DVec3::Y * behind_mm;
+        assert!(clearance(target) > 0.0, "{behind_mm}");
+        let before = SUBJECT.center_world - DVec3::Y * behind_mm;
+        assert!(clearance(before) > 0.0, "{behind_mm}");
+    }
+    // The control: an eye that is given may lie inside.
+    let inside = camera(&["--ortho", "20", "--eye", "1,1,3"]);
+    let depth = (SUBJECT.center_world - inside.eye_world()).dot(inside.forward());
+    assert!(depth < SUBJECT.radius_mm);
+}
+
+#[test]
+fn an_eye_too_far_for_its_volume_is_refused() {
+    let outcome = |line: &[&str]| {
+        let words = std::iter::once("angioray").chain(line.iter().copied());
+        let flags = Flags::try_parse_from(words).unwrap();
+        flags.options.resolve(&SUBJECT).map(|_| ())
+    };
+    for line in [
+        &["--eye=1e200,0,0"][..],
+        &["--eye=1e13,0,0"],
+        &["--target=0,-1e150,0"],
+        &["--eye=1.1e10,0,0"],
+        &["--target=0,0,1e12", "--view", "left"],
+    ] {
+        let error = outcome(line).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{line:?}");
+        let said = error.to_string();
+        assert!(
+            said.contains("the eye is") || said.contains("too far away"),
+            "{said}"
+        );
+        assert!(said.len() < 160, "{said}");
+    }
+    // The control.
+    assert_eq!(outcome(&["--eye=0.9e10,0,0"]), Ok(()));
+    assert_eq!(outcome(&["--fov", "1e-6"]), Ok(()));
 }

@@ -66,6 +66,12 @@ fn thresholds_are_values_shares_or_otsu() {
     assert!(matches!(default.scene.picture, Picture::Surface { iso, .. } if iso == 120.0));
     assert!(default.notes[0].starts_with("iso = 120"));
     assert!(resolved(&flags(&["--iso", "otsu"])).notes[0].contains("42.5"));
+    // As typed, and no digits that only the arithmetic makes.
+    let seven = resolved(&flags(&["--iso", "7%"]));
+    assert_eq!(seven.notes, ["iso = 7% is -72"]);
+    let third = resolved(&flags(&["--mode", "mip", "--window", "33.3%,90%"]));
+    assert_eq!(third.notes, ["window = 33.3%,90% is 33.2,260"]);
+    assert_ne!((0.333_f64 * 400.0 - 100.0).to_string(), "33.2");
     assert!(resolved(&flags(&["--iso", "301"])).notes[0].contains("outside"));
     assert!(resolved(&flags(&["--iso", "30"])).notes.is_empty());
     let lmip = resolved(&flags(&["--mode", "lmip", "--lmip-threshold", "50%"]));
@@ -142,7 +148,8 @@ fn scene_files_take_strings_numbers_and_lists() {
     assert_eq!(as_text, as_values);
     assert_eq!(as_text.camera.size, ImageSize::new(64, 32).ok());
     assert_eq!(file("size = 64").camera.size, ImageSize::new(64, 64).ok());
-    assert_eq!(file("iso = '50%'").picture.iso, Some(Threshold::Share(0.5)));
+    let half = Some(Threshold::Percent(50.0));
+    assert_eq!(file("iso = '50%'").picture.iso, half);
     assert_ne!(file("iso = 50.5"), file("iso = 50"));
     let inline = file("mode = 'dvr'\n[tf]\npoints = [[0, 0, 0, 0, 0], [1, 1, 1, 1, 0.5]]");
     assert!(matches!(
@@ -221,10 +228,10 @@ fn nonsense_is_refused_with_a_reason() {
         ("shading = 'none'\nspecular = 0.5", "without shading"),
         ("fov = 30\northo = 100", "exclude each other"),
         ("eye = [1, 2, 3]\nview = 'left'", "exclude each other"),
-        ("eye = [1, 2, 3]\nzoom = 2", "exclude each other"),
+        ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "exclude each other"),
         ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
         ("up = [0, 1, 0]", "'up' goes with 'eye'"),
-        ("eye = [0, 1e31, 0]", "'eye' is too far away"),
+        ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
         let said = refusal(text);
         assert!(said.contains(reason), "{text}: {said}");
@@ -236,7 +243,8 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
         "carm = 'LAO 10'\nview = 'anterior'",
-        "eye = [0, 1e29, 0]",
+        "eye = [1, 2, 3]\nzoom = 2\nroll = 10\nazimuth = 5",
+        "eye = [0, 1e12, 0]",
     ] {
         assert!(file(text).checked().is_ok(), "{text}");
     }

@@ -30,7 +30,7 @@ group! {
         device: DeviceName,
 
         /// Work items of a group; never changes the picture [default: by the device]
-        #[arg(long, value_name = "WxH")]
+        #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
         work_group: WorkGroup,
     }
 }

@@ -6,10 +6,12 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::octree::Octree;
+use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::{Switch, VolumeOptions};
 
 use super::load::{Loaded, Source};
+use super::percentiles::percentiles;
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::VolumeStats;
@@ -76,7 +78,7 @@ struct Info {
     bytes: u64,
     otsu: f64,
     suggested_iso: f64,
-    /// Values below which 1, 50, 99 and 99.9 percent of the voxels lie.
+    /// Values above which all but 1, 50, 99 and 99.9 percent of the voxels lie.
     percentiles: Percentiles,
     octree: OctreeInfo,
 }
@@ -108,7 +110,7 @@ impl Info {
         for (axis, size) in size_mm.iter_mut().enumerate() {
             *size = (domain[axis].1 - domain[axis].0) * spacing[axis];
         }
-        let percentile = |p| loaded.histogram.percentile(p);
+        let [p1, p50, p99, p99_9] = percentiles(volume, &loaded.histogram, [1.0, 50.0, 99.0, 99.9]);
         Self {
             volume: VolumeStats::of(&source.path, volume, loaded.non_finite),
             size_mm,
@@ -117,10 +119,10 @@ impl Info {
             otsu: loaded.subject.otsu,
             suggested_iso: loaded.subject.suggested_iso,
             percentiles: Percentiles {
-                p1: percentile(1.0),
-                p50: percentile(50.0),
-                p99: percentile(99.0),
-                p99_9: percentile(99.9),
+                p1,
+                p50,
+                p99,
+                p99_9,
             },
             octree: OctreeInfo {
                 leaf: source.leaf.edge(),
@@ -133,7 +135,7 @@ impl Info {
 
     fn print(&self, out: &mut dyn Write, histogram: &str) -> io::Result<()> {
         let volume = &self.volume;
-        let triple = |[x, y, z]: [f64; 3]| format!("{x:.6} {y:.6} {z:.6}");
+        let triple = |each: [f64; 3]| each.map(fine).join(" ");
         let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
         row("file", volume.file.clone())?;
         let [nx, ny, nz] = volume.dims;
@@ -150,7 +152,11 @@ impl Info {
         }
         row(
             "values",
-            format!("{} to {}", volume.range[0], volume.range[1]),
+            format!(
+                "{} to {}",
+                concise(volume.range[0]),
+                concise(volume.range[1])
+            ),
         )?;
         row("non-finite", format!("{} voxels", volume.non_finite))?;
         let p = &self.percentiles;
@@ -158,14 +164,14 @@ impl Info {
             "percentiles",
             format!(
                 "1%: {}  50%: {}  99%: {}  99.9%: {}",
-                short(p.p1),
-                short(p.p50),
-                short(p.p99),
-                short(p.p99_9)
+                concise(p.p1),
+                concise(p.p50),
+                concise(p.p99),
+                concise(p.p99_9)
             ),
         )?;
-        row("suggested iso", short(self.suggested_iso))?;
-        row("otsu", short(self.otsu))?;
+        row("suggested iso", concise(self.suggested_iso))?;
+        row("otsu", concise(self.otsu))?;
         let tree = &self.octree;
         row(
             "octree",
@@ -177,14 +183,21 @@ impl Info {
                 100.0 * tree.share_of_volume
             ),
         )?;
-        writeln!(out, "\n{histogram}")
+        writeln!(
+            out,
+            "\nshare of the voxels by value, from each line's on; the bars are logarithmic"
+        )?;
+        writeln!(out, "{histogram}")
     }
 }
 
-/// Six significant digits.
-fn short(value: f64) -> String {
-    match format!("{value:.5e}").parse::<f64>() {
-        Ok(rounded) => rounded.to_string(),
-        Err(_) => value.to_string(),
-    }
+/// A length in mm or a part of a direction, to a millionth.
+fn fine(value: f64) -> String {
+    // Adding 0 takes the sign off a zero.
+    let millionths = (value * 1e6).round() / 1e6 + 0.0;
+    concise(if millionths.is_finite() {
+        millionths
+    } else {
+        value
+    })
 }

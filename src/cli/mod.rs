@@ -5,6 +5,7 @@ mod engine;
 mod info;
 mod load;
 mod outputs;
+mod percentiles;
 mod phantom;
 mod progress;
 mod render;

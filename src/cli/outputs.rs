@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 use crate::frame::{BitDepth, Encoding, Format, Layer};
+use crate::output::check_writable;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
 use crate::scene::{FilePath, SceneFile};
@@ -24,11 +25,11 @@ group! {
         aov: Layers,
 
         /// Bits per channel of a .png: 8 or 16 [default: 8]
-        #[arg(long, value_name = "8|16")]
+        #[arg(long, value_name = "8|16", allow_hyphen_values = true)]
         bit_depth: Bits,
 
         /// Quality of a .jpg, 1 to 100 [default: 92]
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
         quality: u8,
 
         /// Write what was rendered and how long it took as JSON
@@ -112,33 +113,25 @@ impl Files {
     }
 }
 
-/// That `path` can become a file: its folder is there, it is no folder itself, and it is none of
-/// the files that the job reads.
+/// That `path` can be written, and is none of the files that the job reads.
 pub fn check(path: &Path, inputs: &[&Path]) -> Result<()> {
-    let shown = path.display();
-    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
-        return Err(Error::failed(format!("{shown}: this is a folder")).hint("name a file in it"));
-    }
-    let folder = folder(path);
-    if !folder.is_dir() {
-        return Err(Error::failed(format!(
-            "{shown}: there is no folder {} to write to",
-            folder.display()
-        ))
-        .hint("make the folder first"));
-    }
-    if path.is_symlink() && !path.exists() {
-        return Err(Error::failed(format!(
-            "{shown}: this is a symbolic link to a file that is not there"
-        ))
-        .hint("remove the link, or name its target"));
-    }
     if inputs.iter().any(|input| place(input) == place(path)) {
         return Err(Error::usage(format!(
-            "{shown}: this file is read, writing would replace it"
+            "{}: this file is read, writing would replace it",
+            path.display()
         )));
     }
-    Ok(())
+    check_writable(path)
+}
+
+/// The same file, named so that the working folder does not matter. A symbolic link keeps its own
+/// name: a raw file's layout, and which files belong to a header, may lie in it.
+pub fn absolute(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default();
+    match fs::canonicalize(folder(path)) {
+        Ok(folder) => folder.join(name),
+        Err(_) => path.to_owned(),
+    }
 }
 
 fn folder(path: &Path) -> &Path {
@@ -150,10 +143,7 @@ fn folder(path: &Path) -> &Path {
 
 /// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.
 fn place(path: &Path) -> PathBuf {
-    let there = || fs::canonicalize(path);
-    let will_be =
-        |_| fs::canonicalize(folder(path)).map(|f| f.join(path.file_name().unwrap_or_default()));
-    there().or_else(will_be).unwrap_or_else(|_| path.to_owned())
+    fs::canonicalize(path).unwrap_or_else(|_| absolute(path))
 }
 
 /// `--aov`: layers by name, or all.

@@ -50,11 +50,11 @@ group! {
         output: FilePath,
 
         /// Voxels along each axis [default: 128; 41 for marschner-lobb]
-        #[arg(long, value_name = "N|NXxNYxNZ")]
+        #[arg(long, value_name = "N|NXxNYxNZ", allow_hyphen_values = true)]
         size: GridSize,
 
         /// Voxel spacing in mm [default: 1]
-        #[arg(long, value_name = "S|SX,SY,SZ")]
+        #[arg(long, value_name = "S|SX,SY,SZ", allow_hyphen_values = true)]
         spacing: SpacingMm,
 
         /// Voxel type: u8, u16, i16 or f32 [default: u8]
@@ -63,7 +63,7 @@ group! {
         voxel_type: VoxelName,
 
         /// Decides the vessel tree and all noise [default: 1]
-        #[arg(long, value_name = "S")]
+        #[arg(long, value_name = "S", allow_hyphen_values = true)]
         seed: u64,
 
         /// Standard deviation of noise added to every voxel, as a share of the value range
@@ -141,6 +141,10 @@ impl PhantomArguments {
         }
         let inputs: Vec<&Path> = self.scene.path().into_iter().collect();
         outputs::check(&output, &inputs)?;
+        let tree_file = output.with_extension("tree.json");
+        if kind == PhantomKind::Vessels {
+            outputs::check(&tree_file, &inputs)?;
+        }
         let dims = match asked.size {
             Some(GridSize(dims)) => dims,
             None => Dims::new([u64::from(kind.default_size()); 3])?,
@@ -164,16 +168,6 @@ impl PhantomArguments {
         };
         let made = phantom(&spec)?;
         made.volume.notes().iter().for_each(note);
-        if let Some(tree) = &made.tree {
-            let path = output.with_extension("tree.json");
-            outputs::check(&path, &inputs)?;
-            write_tree(&path, tree)?;
-            message(format_args!(
-                "wrote {}: {} vessel segments",
-                path.display(),
-                tree.segments.len()
-            ));
-        }
         write_nrrd(&made.volume, &output, asked.gzip.is_some_and(Switch::is_on))?;
         message(format_args!(
             "wrote {}: {dims} {}; {}",
@@ -181,6 +175,14 @@ impl PhantomArguments {
             spec.voxel_type,
             made.truth
         ));
+        if let Some(tree) = &made.tree {
+            write_tree(&tree_file, tree)?;
+            message(format_args!(
+                "wrote {}: {} vessel segments",
+                tree_file.display(),
+                tree.segments.len()
+            ));
+        }
         Ok(())
     }
 }

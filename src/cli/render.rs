@@ -1,15 +1,16 @@
 //! `angioray render`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
-use crate::scene::{SceneOptions, TransferChoice};
+use crate::scene::{FilePath, SceneOptions, TransferChoice};
+use crate::volume::files_of;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Source, ms_since};
-use super::outputs::OutputOptions;
+use super::outputs::{OutputOptions, absolute};
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::{Counts, Memory, Stats, Times, VolumeStats};
@@ -44,7 +45,7 @@ impl RenderArguments {
         let file = self.scene.open()?;
         let options = self.options.over(SceneOptions::of_file(&file)?);
         let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
-        let options = options.checked()?;
+        let mut options = options.checked()?;
         let output = OutputOptions::of_file(&file)?;
         let output = self.output.clone().over(self.output.keep_of(output));
         let device = self.device.keep_of(file.group()?);
@@ -52,19 +53,22 @@ impl RenderArguments {
 
         let files = output.files()?;
         let source = Source::of(&options.volume)?;
-        let inputs = [
-            Some(source.path.as_path()),
-            self.scene.path(),
-            transfer_file.as_deref(),
-        ];
-        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+        let volume_files = files_of(&source.path);
+        let inputs = [self.scene.path(), transfer_file.as_deref()];
+        let volume_files = volume_files.iter().map(PathBuf::as_path);
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(volume_files).collect();
         files.check(&inputs)?;
+        // The scene that is stored renders the same volume from wherever it is read, in the same
+        // way.
+        options.volume.volume = Some(FilePath(absolute(&source.path)));
+        options.volume.octree_leaf = Some(source.leaf.edge());
         let engine = Engine::open(&device)?;
 
         let bars = Bars::new();
         let loaded = source.load(&bars)?;
         let resolved = options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
+        files.encoding.check_size(resolved.scene.size)?;
 
         let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
         let rendered = engine.render(&loaded.volume, &source, &resolved.scene, wanted, &bars)?;

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::extent::ImageSize;
 
-use super::Layer;
+use super::{Layer, webp};
 
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,6 +122,22 @@ impl Encoding {
                 "a JPEG quality of {}: it must be 1 to 100",
                 self.quality
             )));
+        }
+        Ok(())
+    }
+
+    /// That a picture of this size fits into the format; [`super::write`] checks it too. All but
+    /// WebP hold every [`ImageSize`]: JPEG's limit is [`ImageSize::MAX_SIDE_PX`] itself.
+    ///
+    /// # Errors
+    /// A side longer than the format has numbers for (usage).
+    pub fn check_size(&self, size: ImageSize) -> Result<()> {
+        let most = webp::MAX_SIDE_PX;
+        if self.format == Format::WebP && size.width().max(size.height()) > most {
+            return Err(Error::usage(format!(
+                "a WebP has at most {most} pixels a side, the picture is {size}"
+            ))
+            .hint("write a .png"));
         }
         Ok(())
     }

@@ -6,23 +6,15 @@ use std::path::Path;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 use super::{Frame, quantize, write};
 
 /// The header has 14 bits for a side; most decoders stop one short of 2^14.
-const MAX_SIDE_PX: u32 = 16_383;
+pub(super) const MAX_SIDE_PX: u32 = 16_383;
 
 pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result<()> {
     let (width, height) = (frame.size.width(), frame.size.height());
-    if width.max(height) > MAX_SIDE_PX {
-        return Err(Error::failed(format!(
-            "{}: a WebP has at most {MAX_SIDE_PX} pixels a side, the picture is {}",
-            path.display(),
-            frame.size
-        ))
-        .hint("write a .png"));
-    }
     WebPEncoder::new_lossless(out)
         .write_image(
             &quantize::rgb8(frame)?,

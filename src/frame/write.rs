@@ -15,7 +15,7 @@ use super::{Encoding, Format, Frame, exr, jpeg, npy, png, webp};
 /// have no place for them.
 ///
 /// # Errors
-/// An [`Encoding`] that its format cannot do (usage); a frame without a plane that it needs or
+/// An [`Encoding`] that its format cannot do, a picture larger than it holds (usage); a frame without a plane that it needs or
 /// with planes of wrong length; a path that cannot be written.
 pub fn write(
     path: &Path,
@@ -24,6 +24,9 @@ pub fn write(
     metadata: &[(&str, &str)],
 ) -> Result<()> {
     encoding.check()?;
+    encoding
+        .check_size(frame.size)
+        .map_err(|e| e.at(path.display()))?;
     frame.check()?;
     write_atomically(path, |out| match encoding.format {
         Format::Png => png::encode(out, path, frame, encoding.bit_depth, metadata),

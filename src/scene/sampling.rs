@@ -45,14 +45,6 @@ pub struct Refine {
 
 impl Refine {
     pub const MAX_ITERATIONS: u32 = 32;
-    /// METHOD names, in the order of [`RefineMethod`].
-    const NAMES: [(&'static str, RefineMethod); 5] = [
-        ("none", RefineMethod::None),
-        ("bisection", RefineMethod::Bisection),
-        ("regula-falsi", RefineMethod::RegulaFalsi),
-        ("illinois", RefineMethod::Illinois),
-        ("newton", RefineMethod::Newton),
-    ];
 }
 
 impl Default for Refine {
@@ -70,7 +62,7 @@ impl FromStr for Refine {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::usage(format!(
-                "'{text}' is not a refiner: write none, bisection, regula-falsi, illinois or newton, and :N for N iterations (1 to {})",
+                "'{text}' is not a refiner: :N is for 1 to {} iterations, and none has none",
                 Self::MAX_ITERATIONS
             ))
         };
@@ -78,10 +70,7 @@ impl FromStr for Refine {
             Some((name, count)) => (name, Some(count)),
             None => (text, None),
         };
-        let &(_, method) = Self::NAMES
-            .iter()
-            .find(|(n, _)| *n == name)
-            .ok_or_else(wrong)?;
+        let method = name.parse()?;
         let iterations = match (method, count) {
             (RefineMethod::None, Some(_)) => return Err(wrong()),
             (RefineMethod::None, None) => 0,
@@ -100,13 +89,9 @@ impl FromStr for Refine {
 
 impl std::fmt::Display for Refine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (name, _) = Self::NAMES
-            .iter()
-            .find(|(_, m)| *m == self.method)
-            .expect("every method has a name");
         match self.method {
-            RefineMethod::None => f.write_str(name),
-            _ => write!(f, "{name}:{}", self.iterations),
+            RefineMethod::None => self.method.fmt(f),
+            method => write!(f, "{method}:{}", self.iterations),
         }
     }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::de::{self, DeserializeSeed, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::options::concise;
 use super::toml_error::located;
 use super::{Knot, Rgb, TransferFunction};
 use crate::error::{Error, Result};
@@ -123,7 +124,8 @@ fn positive<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<f64, D::E
         Ok(length)
     } else {
         Err(de::Error::custom(format!(
-            "unit_length_mm = {length} must be positive"
+            "unit_length_mm = {} must be positive",
+            concise(length)
         )))
     }
 }
@@ -203,12 +205,15 @@ impl<'de> Visitor<'de> for PointAfter {
         }
         if let Some(wrong) = color_and_opacity.iter().find(|c| !(0.0..=1.0).contains(*c)) {
             return Err(de::Error::custom(format!(
-                "{wrong} is outside 0..1: r, g, b and opacity must lie in it"
+                "{} is outside 0..1: r, g, b and opacity must lie in it",
+                concise(*wrong)
             )));
         }
-        if let Some([before, ..]) = self.0.filter(|before| value < before[0]) {
+        if let Some(before) = self.0.filter(|before| value < before[0]) {
             return Err(de::Error::custom(format!(
-                "the value {value} is below the one before it, {before}: points ascend"
+                "the value {} is below the one before it, {}: points ascend",
+                concise(value),
+                concise(before[0])
             )));
         }
         Ok(point)

@@ -29,6 +29,33 @@ impl Orientation {
         Self { toward_eye, up }
     }
 
+    /// Of an eye in this direction from the target, its `up` made orthogonal; `None` where they
+    /// are zero or parallel.
+    pub fn looking(toward_eye: DVec3, up: DVec3) -> Option<Self> {
+        let toward_eye = toward_eye.try_normalize()?;
+        let across = up.try_normalize()?.cross(toward_eye);
+        if across.length() < 1e-9 {
+            return None;
+        }
+        Some(Self {
+            toward_eye,
+            up: toward_eye.cross(across.normalize()),
+        })
+    }
+
+    /// The up of an eye for which none is given: the head; straight from above or below, where that
+    /// is no direction in the picture, as in the views superior and inferior.
+    pub fn default_up(toward_eye: DVec3) -> DVec3 {
+        let toward_eye = toward_eye.normalize_or_zero();
+        if toward_eye.cross(DVec3::Z).length() >= 1e-6 {
+            DVec3::Z
+        } else if toward_eye.z > 0.0 {
+            Self::of(View::Superior).up
+        } else {
+            Self::of(View::Inferior).up
+        }
+    }
+
     /// The eye turned about `up`, to the picture's right when positive: from the anterior view,
     /// to the patient's left.
     #[must_use]

@@ -16,7 +16,7 @@ pub use histogram::{Histogram, suggested_iso};
 pub use phantom::{
     MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment, VesselTree, phantom,
 };
-pub use read::{RawLayout, RawSize, RawType, ReadOptions, read};
+pub use read::{RawLayout, RawSize, RawType, ReadOptions, files_of, read};
 pub use smooth::smooth;
 pub use write_nrrd::write_nrrd;
 

@@ -18,7 +18,7 @@ group! {
     #[command(next_help_heading = "Camera")]
     pub struct CameraOptions {
         /// Width and height of the picture in pixels [default: 512x512]
-        #[arg(long, value_name = "WxH")]
+        #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
         size: ImageSize,
 
         /// The eye's position in world space, mm (LPS: x to the patient's left, y to posterior, z
@@ -30,17 +30,17 @@ group! {
         #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
         target: Triple,
 
-        /// The direction that is up in the picture, with --eye [default: 0,0,1; 0,-1,0 when
-        /// looking along z]
+        /// The direction that is up in the picture, with --eye [default: 0,0,1; when looking along
+        /// z that of the views superior and inferior]
         #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
         up: Triple,
 
         /// Vertical field of view in degrees, before --zoom [default: 30]
-        #[arg(long, value_name = "DEG")]
+        #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         fov: FovDeg,
 
         /// Orthographic projection; the picture's height in mm, before --zoom
-        #[arg(long, value_name = "HEIGHT_MM")]
+        #[arg(long, value_name = "HEIGHT_MM", allow_hyphen_values = true)]
         ortho: HeightMm,
 
         /// The side of the patient on which the eye is: anterior, posterior, left, right, superior
@@ -48,12 +48,13 @@ group! {
         #[arg(long, value_name = "NAME")]
         view: View,
 
-        /// Turn the eye about the view's up axis: from the anterior view, positive moves it to the
-        /// patient's left [default: 0]
+        /// Turn the eye about the target and the camera's up axis, to the picture's right: from the
+        /// anterior view, positive moves it to the patient's left [default: 0]
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         azimuth: AngleDeg,
 
-        /// Then raise the eye: positive moves it toward the head [default: 0]
+        /// Then raise the eye toward the picture's top: from the sides, positive moves it toward
+        /// the head [default: 0]
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         elevation: AngleDeg,
 
@@ -62,8 +63,9 @@ group! {
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         roll: AngleDeg,
 
-        /// Magnify the picture; at 1 the whole volume's bounding sphere fits [default: 1]
-        #[arg(long, value_name = "F")]
+        /// Magnify the picture by narrowing the lens; without --eye the whole volume's bounding
+        /// sphere fits at 1 [default: 1]
+        #[arg(long, value_name = "F", allow_hyphen_values = true)]
         zoom: Zoom,
 
         /// A C-arm's angulation, such as 'LAO 30 CRA 20' (azimuth 30, elevation 20); RAO and CAU
@@ -75,41 +77,29 @@ group! {
 
 impl CameraOptions {
     const DEFAULT_FOV_DEG: f64 = 30.0;
-    /// How far out the eye and the target may be: their distance squared is a number still.
-    const FAR_MM: f64 = 1e30;
-
-    /// The keys given that place the eye by a view.
-    fn view_keys(&self) -> Vec<&'static str> {
-        let given = [
-            ("view", self.view.is_some()),
-            ("azimuth", self.azimuth.is_some()),
-            ("elevation", self.elevation.is_some()),
-            ("roll", self.roll.is_some()),
-            ("zoom", self.zoom.is_some()),
-            ("carm", self.carm.is_some()),
-        ];
-        given
-            .iter()
-            .filter(|(_, is)| *is)
-            .map(|(key, _)| *key)
-            .collect()
-    }
+    /// How far out the eye and the target may be.
+    const FAR_MM: f64 = 1e12;
+    /// How far from the volume's centre the eye may be, in radii of the bounding sphere: from
+    /// farther away rays differ by less than their numbers tell apart.
+    const FAR_RADII: f64 = 1e9;
 
     /// What of a scene file's camera still applies when these are the flags: an eye replaces a
-    /// view, a view replaces an eye, one lens the other.
+    /// view and a view an eye, each with what turns it; one lens replaces the other. Turning and
+    /// zooming go with either.
     pub(super) fn keep_of(&self, mut file: Self) -> Self {
-        if self.eye.is_some() {
+        let replaces_view = self.eye.is_some();
+        let replaces_eye = file.eye.is_some() && (self.view.is_some() || self.carm.is_some());
+        if replaces_view || replaces_eye {
             file = Self {
                 view: None,
+                carm: None,
                 azimuth: None,
                 elevation: None,
                 roll: None,
-                zoom: None,
-                carm: None,
                 ..file
             };
         }
-        if !self.view_keys().is_empty() {
+        if replaces_eye {
             (file.eye, file.up) = (None, None);
         }
         if self.carm.is_some() {
@@ -127,13 +117,22 @@ impl CameraOptions {
         file
     }
 
+    /// The picture's size.
+    pub(super) fn size(&self) -> Result<ImageSize> {
+        match self.size {
+            Some(size) => Ok(size),
+            None => ImageSize::new(512, 512),
+        }
+    }
+
     /// # Errors
     /// Options that contradict each other, a point too far away.
     pub(super) fn check(&self) -> Result<()> {
         for (key, point) in [("eye", self.eye), ("target", self.target)] {
             if point.is_some_and(|Triple(p)| p.abs().max_element() > Self::FAR_MM) {
                 return Err(Error::usage(format!(
-                    "'{key}' is too far away: each coordinate must be within -1e30 to 1e30 mm"
+                    "'{key}' is too far away: each coordinate must be within -{far:e} to {far:e} mm",
+                    far = Self::FAR_MM
                 )));
             }
         }
@@ -142,13 +141,14 @@ impl CameraOptions {
                 "'fov' and 'ortho' exclude each other: a picture is perspective or orthographic",
             ));
         }
+        let by_view = [("view", self.view.is_some()), ("carm", self.carm.is_some())];
         if self.eye.is_some()
-            && let Some(key) = self.view_keys().first()
+            && let Some((key, _)) = by_view.iter().find(|(_, is)| *is)
         {
             return Err(Error::usage(format!(
-                "'eye' and '{key}' exclude each other: '{key}' places the eye by a view"
+                "'eye' and '{key}' exclude each other: both place the eye"
             ))
-            .hint("with an eye, 'up' rolls the camera and 'fov' or 'ortho' zooms"));
+            .hint("'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either"));
         }
         if self.up.is_some() && self.eye.is_none() {
             return Err(
@@ -175,10 +175,7 @@ impl CameraOptions {
     /// changes nothing.
     pub(super) fn filled(self, subject: &Subject) -> Result<Self> {
         self.check()?;
-        let size = match self.size {
-            Some(size) => size,
-            None => ImageSize::new(512, 512)?,
-        };
+        let size = self.size()?;
         let target = self.target.map_or(subject.center_world, |Triple(p)| p);
         let zoom = self.zoom.map_or(1.0, Zoom::get);
         let fov_deg = self.fov.map_or(Self::DEFAULT_FOV_DEG, FovDeg::get);
@@ -186,21 +183,35 @@ impl CameraOptions {
             Some(Triple(eye)) => {
                 let up = match self.up {
                     Some(Triple(up)) => up,
-                    None => default_up(target - eye),
+                    None => Orientation::default_up(eye - target),
                 };
-                (eye, up)
+                self.turned(eye, target, up)
             }
             None => {
-                let orientation = self.orientation();
+                let orientation = self.turn(match self.carm {
+                    Some(carm) => Orientation::of(View::Anterior)
+                        .azimuth(carm.azimuth_deg)
+                        .elevation(carm.elevation_deg),
+                    None => Orientation::of(self.view.unwrap_or_default()),
+                });
                 let distance_mm = match self.ortho {
-                    // The eye plane clears the volume.
-                    Some(_) => 2.0 * subject.radius_mm,
+                    // The eye plane clears the volume, wherever the target is.
+                    Some(_) => 2.0 * subject.radius_mm + target.distance(subject.center_world),
                     None => fit_distance_mm(subject.radius_mm, fov_deg, size),
                 };
                 let eye = target + orientation.toward_eye * distance_mm;
                 (eye, orientation.up)
             }
         };
+        let far_mm = Self::FAR_RADII * subject.radius_mm;
+        let distance_mm = eye.distance(subject.center_world);
+        if distance_mm > far_mm {
+            return Err(Error::usage(format!(
+                "the eye is {distance_mm:.1e} mm away from a volume of {:.1e} mm radius: it must be within {far_mm:.1e} mm",
+                subject.radius_mm
+            ))
+            .hint("'ortho' looks from infinitely far away"));
+        }
         let (fov, ortho) = match self.ortho {
             Some(height) => (None, Some(HeightMm::new(height.get() / zoom)?)),
             None if zoom == 1.0 => (Some(FovDeg::new(fov_deg)?), None),
@@ -220,16 +231,31 @@ impl CameraOptions {
         })
     }
 
-    fn orientation(&self) -> Orientation {
+    /// By `azimuth`, `elevation` and `roll`, in this order.
+    fn turn(&self, orientation: Orientation) -> Orientation {
         let degrees = |angle: Option<AngleDeg>| angle.map_or(0.0, AngleDeg::get);
-        let (azimuth_deg, elevation_deg) = match self.carm {
-            Some(carm) => (carm.azimuth_deg, carm.elevation_deg),
-            None => (degrees(self.azimuth), degrees(self.elevation)),
-        };
-        Orientation::of(self.view.unwrap_or_default())
-            .azimuth(azimuth_deg)
-            .elevation(elevation_deg)
+        orientation
+            .azimuth(degrees(self.azimuth))
+            .elevation(degrees(self.elevation))
             .roll(degrees(self.roll))
+    }
+
+    /// An eye and its up turned about the target; as they are where nothing turns them, or where
+    /// they make no camera.
+    fn turned(&self, eye: DVec3, target: DVec3, up: DVec3) -> (DVec3, DVec3) {
+        let is_still = |angle: Option<AngleDeg>| angle.is_none_or(|angle| angle.get() == 0.0);
+        let Some(before) = Orientation::looking(eye - target, up) else {
+            return (eye, up);
+        };
+        let after = self.turn(before);
+        match (
+            is_still(self.azimuth) && is_still(self.elevation),
+            is_still(self.roll),
+        ) {
+            (true, true) => (eye, up),
+            (true, false) => (eye, after.up),
+            (false, _) => (target + after.toward_eye * eye.distance(target), after.up),
+        }
     }
 
     /// From filled options.
@@ -244,15 +270,5 @@ impl CameraOptions {
         };
         let point = |triple: Option<Triple>| triple.map_or(DVec3::ZERO, |Triple(p)| p);
         Camera::look_at(point(self.eye), point(self.target), point(self.up), lens)
-    }
-}
-
-/// The head is up; looking along the body's axis, the patient's front is.
-fn default_up(line_of_sight: DVec3) -> DVec3 {
-    let across = line_of_sight.normalize_or_zero().cross(DVec3::Z).length();
-    if across < 1e-6 {
-        DVec3::NEG_Y
-    } else {
-        DVec3::Z
     }
 }

@@ -1,5 +1,15 @@
 //! A group of options: flags and scene file keys of the same names.
 
+/// What a group of options tells about its keys, which are its flags' names.
+pub(crate) trait Keys: Sized {
+    /// Those given.
+    fn given(&self) -> Vec<String>;
+
+    /// The same options without those whose key does not pass.
+    #[must_use]
+    fn keeping(self, passes: impl Fn(&str) -> bool) -> Self;
+}
+
 /// Declares a struct whose fields are all optional, with `over`: what it says, and for what it
 /// does not say, what another says. With `derive(serde::Serialize)` it is a part of the stored
 /// scene.
@@ -23,6 +33,24 @@ macro_rules! group {
             #[must_use]
             pub fn over(self, base: Self) -> Self {
                 Self { $($field: self.$field.or(base.$field),)* }
+            }
+        }
+
+        impl $crate::scene::options::group::Keys for $name {
+            fn given(&self) -> Vec<String> {
+                let mut keys = Vec::new();
+                $(if self.$field.is_some() {
+                    keys.push(stringify!($field).replace('_', "-"));
+                })*
+                keys
+            }
+
+            fn keeping(self, passes: impl Fn(&str) -> bool) -> Self {
+                Self {
+                    $($field: self.$field.filter(|_| {
+                        passes(&stringify!($field).replace('_', "-"))
+                    }),)*
+                }
             }
         }
     };

@@ -24,6 +24,7 @@ mod words;
 
 pub use camera::CameraOptions;
 pub use file::{SceneFile, flag_names};
+pub(crate) use numbers::concise;
 pub use numbers::{
     AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
     StepVoxels, Termination, Zoom,
@@ -37,7 +38,7 @@ pub use volume::{FilePath, RawSizeText, VolumeOptions};
 pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
-use crate::extent::{ImageSize, Range};
+use crate::extent::Range;
 use crate::scene::{Scene, TransferFile};
 
 /// Everything that determines a picture, as far as it was said.
@@ -114,12 +115,8 @@ impl SceneOptions {
             sampling: self.sampling.clone().filled()?,
             tone: self.tone.clone().filled()?,
         };
-        let size = match options.camera.size {
-            Some(size) => size,
-            None => ImageSize::new(512, 512)?,
-        };
         let scene = Scene {
-            size,
+            size: options.camera.size()?,
             camera: options.camera.camera()?,
             picture: options.picture.picture(subject.range)?,
             sampling: options.sampling.sampling(),
@@ -138,7 +135,10 @@ impl SceneOptions {
         let mut notes = Vec::new();
         let given = &self.picture;
         let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {
-            let Some(value) = filled else { return };
+            let Some(Threshold::Value(value)) = filled else {
+                return;
+            };
+            let value = concise(value);
             match given {
                 None => notes.push(format!(
                     "{key} = {value}, suggested by the histogram: --{key} chooses another"
@@ -158,13 +158,21 @@ impl SceneOptions {
         {
             let Range { min, max } = subject.range;
             notes.push(format!(
-                "iso = {iso} lies outside the volume's values, {min} to {max}: there is no surface"
+                "iso = {} lies outside the volume's values, {} to {}: there is no surface",
+                concise(iso),
+                concise(min),
+                concise(max)
             ));
         }
         if let (Some(ends), Some(filled)) = (given.window, filled.picture.window)
             && ends != filled
         {
-            notes.push(format!("window = {ends} is {filled}"));
+            let end = |threshold| match threshold {
+                Threshold::Value(value) => concise(value),
+                other => other.to_string(),
+            };
+            let (low, high) = (end(filled.low), end(filled.high));
+            notes.push(format!("window = {ends} is {low},{high}"));
         }
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {
             let preset = TransferFile::DEFAULT_PRESET;

@@ -17,7 +17,7 @@ macro_rules! numbers {
                 if !valid(value) {
                     return Err(crate::error::Error::usage(format!(
                         concat!($what, " of {} is out of its domain: it must be ", $domain),
-                        value
+                        $crate::scene::options::concise(value)
                     )));
                 }
                 Ok(Self(value))
@@ -44,6 +44,17 @@ macro_rules! numbers {
 
         plain!($name);
     )*};
+}
+
+/// A number as a reader wants it: seven significant digits, very large and very small ones with an
+/// exponent.
+pub(crate) fn concise(value: f64) -> String {
+    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        1e-4..1e10 => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
 }
 
 /// A finite number.
@@ -82,4 +93,39 @@ numbers! {
     Gamma: "a gamma", "from 0.1 to 10", |v| (0.1..=10.0).contains(&v);
     /// Standard deviation of the Gaussian that smooths the volume, mm; 0 leaves it alone.
     SigmaMm: "a sigma", "from 0 to 1000 mm", |v| (0.0..=1000.0).contains(&v);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        for (value, text) in [
+            (7.000000000000001, "7"),
+            (563.2000029087067, "563.2"),
+            (-32768.0, "-32768"),
+            (16777.216, "16777.22"),
+            (-0.0, "0"),
+            (0.00573585, "0.00573585"),
+            (1e200, "1e200"),
+            (-3.25e-12, "-3.25e-12"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(concise(value), text);
+        }
+        // The control: what is printed otherwise.
+        assert_ne!(concise(1e200), 1e200.to_string());
+    }
+
+    #[test]
+    fn a_refusal_names_an_absurd_number_in_short() {
+        let said = FovDeg::new(1e300).unwrap_err().to_string();
+        assert!(
+            said.starts_with("a field of view of 1e300 is out"),
+            "{said}"
+        );
+        let said = Zoom::new(-1.5).unwrap_err().to_string();
+        assert!(said.starts_with("a zoom of -1.5 is out"), "{said}");
+    }
 }

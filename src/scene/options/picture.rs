@@ -10,7 +10,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::group::group;
+use super::group::{Keys, group};
 use super::numbers::{Reflectance, Shininess, Termination};
 use super::subject::Subject;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
@@ -44,7 +44,7 @@ group! {
 
         /// iso: the surface's colour, sRGB r,g,b from 0 to 1 or #rrggbb [default: warm ivory,
         /// 0.94,0.87,0.76]
-        #[arg(long, value_name = "COLOR")]
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         color: SrgbColor,
 
         /// Projections: the values shown black and white; numbers, shares such as 5%, or otsu
@@ -63,7 +63,7 @@ group! {
 
         /// dvr: the opacity at which a ray ends; the colour lost is at most 1 minus this
         /// [default: 0.999]
-        #[arg(long, value_name = "OPACITY")]
+        #[arg(long, value_name = "OPACITY", allow_hyphen_values = true)]
         termination: Termination,
 
         /// iso, dvr: none, phong or blinn-phong [default: phong for iso, none for dvr]
@@ -71,19 +71,19 @@ group! {
         shading: Shading,
 
         /// Light reflected from everywhere [default: 0.1]
-        #[arg(long, value_name = "A")]
+        #[arg(long, value_name = "A", allow_hyphen_values = true)]
         ambient: Reflectance,
 
         /// Light reflected from the lamp in all directions [default: 0.9]
-        #[arg(long, value_name = "D")]
+        #[arg(long, value_name = "D", allow_hyphen_values = true)]
         diffuse: Reflectance,
 
         /// Light mirrored from the lamp [default: 0.2]
-        #[arg(long, value_name = "S")]
+        #[arg(long, value_name = "S", allow_hyphen_values = true)]
         specular: Reflectance,
 
         /// Sharpness of the mirrored light [default: 32]
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
         shininess: Shininess,
 
         /// headlight, or the world direction toward a distant light [default: headlight]
@@ -166,6 +166,8 @@ struct Belongs {
 
 const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
 const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
+/// What a shading makes use of.
+const LIGHT: [&str; 5] = ["ambient", "diffuse", "specular", "shininess", "light"];
 const UNLIT: &str = "a projection has no surface to light";
 
 #[rustfmt::skip]
@@ -187,31 +189,6 @@ const BELONGS: [Belongs; 14] = [
 ];
 
 impl PictureOptions {
-    /// The keys given, `mode` aside.
-    fn keys(&self) -> Vec<&'static str> {
-        let given = [
-            ("iso", self.iso.is_some()),
-            ("caps", self.caps.is_some()),
-            ("refine", self.refine.is_some()),
-            ("color", self.color.is_some()),
-            ("window", self.window.is_some()),
-            ("lmip-threshold", self.lmip_threshold.is_some()),
-            ("tf", self.tf.is_some()),
-            ("termination", self.termination.is_some()),
-            ("shading", self.shading.is_some()),
-            ("ambient", self.ambient.is_some()),
-            ("diffuse", self.diffuse.is_some()),
-            ("specular", self.specular.is_some()),
-            ("shininess", self.shininess.is_some()),
-            ("light", self.light.is_some()),
-        ];
-        given
-            .iter()
-            .filter(|(_, is)| *is)
-            .map(|(key, _)| *key)
-            .collect()
-    }
-
     pub(super) fn mode(&self) -> Mode {
         self.mode.unwrap_or(Mode::Iso)
     }
@@ -229,26 +206,16 @@ impl PictureOptions {
         if let Some(mode) = self.mode
             && mode != file.mode()
         {
-            let keeps = |key| {
-                BELONGS
-                    .iter()
-                    .any(|b| b.key == key && b.modes.contains(&mode))
-            };
+            // The file's own shading may be that of its mode.
             let shading = file
                 .shading
                 .filter(|_| LIT.contains(&mode) && LIT.contains(&file.mode()));
             file = Self {
-                mode: None,
-                iso: file.iso.filter(|_| keeps("iso")),
-                caps: file.caps.filter(|_| keeps("caps")),
-                refine: file.refine.filter(|_| keeps("refine")),
-                color: file.color.filter(|_| keeps("color")),
-                window: file.window.filter(|_| keeps("window")),
-                lmip_threshold: file.lmip_threshold.filter(|_| keeps("lmip-threshold")),
-                tf: file.tf.filter(|_| keeps("tf")),
-                termination: file.termination.filter(|_| keeps("termination")),
                 shading,
-                ..file
+                ..file.keeping(|key| {
+                    let belongs = |b: &Belongs| b.key == key && b.modes.contains(&mode);
+                    key != "mode" && BELONGS.iter().any(belongs)
+                })
             };
             let shading = self.shading.or(shading);
             if shading.is_none_or(|s| s == Shading::None) {
@@ -262,24 +229,18 @@ impl PictureOptions {
     }
 
     fn unlit(self) -> Self {
-        Self {
-            ambient: None,
-            diffuse: None,
-            specular: None,
-            shininess: None,
-            light: None,
-            ..self
-        }
+        self.keeping(|key| !LIGHT.contains(&key))
     }
 
     /// # Errors
     /// An option that means nothing to the mode, or to a picture without shading.
     pub(super) fn check(&self) -> Result<()> {
         let mode = self.mode();
-        let given = self.keys();
+        let given = self.given();
+        let is_given = |key: &str| given.iter().any(|given| given == key);
         if let Some(stray) = BELONGS
             .iter()
-            .find(|b| given.contains(&b.key) && !b.modes.contains(&mode))
+            .find(|b| is_given(b.key) && !b.modes.contains(&mode))
         {
             let modes: Vec<String> = stray.modes.iter().map(Mode::to_string).collect();
             return Err(Error::usage(format!(
@@ -288,9 +249,8 @@ impl PictureOptions {
             ))
             .hint(format!("it belongs to mode {}", modes.join(", "))));
         }
-        let light = ["ambient", "diffuse", "specular", "shininess", "light"];
         if self.shading() == Shading::None
-            && let Some(key) = light.iter().find(|key| given.contains(key))
+            && let Some(key) = LIGHT.iter().find(|key| is_given(key))
         {
             return Err(Error::usage(format!(
                 "'{key}' has no effect in mode '{mode}' without shading"
@@ -365,5 +325,38 @@ fn window_values(window: Option<WindowEnds>, subject: &Subject) -> WindowEnds {
     WindowEnds {
         low: Threshold::Value(low),
         high: Threshold::Value(high),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Args;
+
+    use super::*;
+    use crate::scene::options::flag_names;
+
+    #[test]
+    fn every_option_says_which_modes_it_belongs_to() {
+        let mut keys = flag_names(&PictureOptions::augment_args(clap::Command::new("scene")));
+        keys.retain(|key| key != "mode");
+        keys.sort();
+        let mut told: Vec<&str> = BELONGS.iter().map(|belongs| belongs.key).collect();
+        told.sort_unstable();
+        assert_eq!(told, keys);
+        assert!(LIGHT.iter().all(|key| told.contains(key)));
+        // The control: no key is told that is none.
+        assert!(!keys.contains(&"lmip_threshold".to_owned()));
+    }
+
+    #[test]
+    fn given_keys_are_the_flags_names() {
+        let options = PictureOptions {
+            lmip_threshold: Some(Threshold::Otsu),
+            shading: Some(Shading::Phong),
+            ..PictureOptions::default()
+        };
+        assert_eq!(options.given(), ["lmip-threshold", "shading"]);
+        let kept = options.keeping(|key| key != "lmip-threshold");
+        assert_eq!(kept.given(), ["shading"]);
     }
 }

@@ -12,7 +12,7 @@ group! {
     #[command(next_help_heading = "Sampling")]
     pub struct SamplingOptions {
         /// Distance of samples along a ray, in voxels of the smallest spacing [default: 0.5]
-        #[arg(long, value_name = "VOXELS")]
+        #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         step: StepVoxels,
 
         /// The field between voxel centres: nearest or linear [default: linear]

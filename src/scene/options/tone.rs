@@ -12,7 +12,7 @@ group! {
     #[command(next_help_heading = "Display (PNG, JPEG, WebP)")]
     pub struct ToneOptions {
         /// Colour behind everything: sRGB r,g,b from 0 to 1, or #rrggbb [default: 0,0,0]
-        #[arg(long, value_name = "COLOR")]
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         background: SrgbColor,
 
         /// Added to the encoded picture, -1 to 1 [default: 0]
@@ -20,11 +20,11 @@ group! {
         brightness: Brightness,
 
         /// Slope about middle grey [default: 1]
-        #[arg(long, value_name = "C")]
+        #[arg(long, value_name = "C", allow_hyphen_values = true)]
         contrast: Contrast,
 
         /// Above 1 brightens the middle, below 1 darkens it [default: 1]
-        #[arg(long, value_name = "G")]
+        #[arg(long, value_name = "G", allow_hyphen_values = true)]
         gamma: Gamma,
     }
 }

@@ -15,8 +15,8 @@ use crate::scene::Light;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
     Value(f64),
-    /// 0..1 of the value range, written in percent.
-    Share(f64),
+    /// A share of the value range, 0 to 100 percent, as written.
+    Percent(f64),
     Otsu,
 }
 
@@ -25,7 +25,7 @@ impl Threshold {
     pub fn resolve(self, subject: &Subject) -> f64 {
         match self {
             Self::Value(value) => value,
-            Self::Share(share) => subject.range.at(share),
+            Self::Percent(percent) => subject.range.at(percent / 100.0),
             Self::Otsu => subject.otsu,
         }
     }
@@ -41,7 +41,7 @@ impl FromStr for Threshold {
         }
         if let Some(percent) = text.strip_suffix('%') {
             return match number(percent) {
-                Ok(p) if (0.0..=100.0).contains(&p) => Ok(Self::Share(p / 100.0)),
+                Ok(p) if (0.0..=100.0).contains(&p) => Ok(Self::Percent(p)),
                 _ => Err(Error::usage(format!(
                     "'{text}' is not a share of the value range: write 0% to 100%"
                 ))),
@@ -66,7 +66,7 @@ impl fmt::Display for Threshold {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Value(value) => write!(f, "{value}"),
-            Self::Share(share) => write!(f, "{}%", share * 100.0),
+            Self::Percent(percent) => write!(f, "{percent}%"),
             Self::Otsu => f.write_str("otsu"),
         }
     }

@@ -64,11 +64,11 @@ group! {
         volume: FilePath,
 
         /// Which volume of a 4-D file, counted from 0 [default: 0]
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
         frame: u32,
 
         /// Smooth with a Gaussian of this standard deviation in mm [default: 0, not at all]
-        #[arg(long, value_name = "SIGMA_MM")]
+        #[arg(long, value_name = "SIGMA_MM", allow_hyphen_values = true)]
         smooth: SigmaMm,
 
         /// NaN and infinite voxels: replace (by the smallest finite value) or refuse
@@ -77,7 +77,7 @@ group! {
         non_finite: NonFiniteRule,
 
         /// Size of a headerless raw file in voxels
-        #[arg(long, value_name = "NXxNYxNZ")]
+        #[arg(long, value_name = "NXxNYxNZ", allow_hyphen_values = true)]
         raw_size: RawSizeText,
 
         /// Voxel type of a headerless raw file, with 'be' for big-endian: u8, i16, u16be, f32 ...
@@ -85,32 +85,28 @@ group! {
         raw_type: String,
 
         /// Voxel spacing of a headerless raw file, mm [default: 1]
-        #[arg(long, value_name = "S|SX,SY,SZ")]
+        #[arg(long, value_name = "S|SX,SY,SZ", allow_hyphen_values = true)]
         raw_spacing: SpacingMm,
 
         /// Bytes before the first voxel of a headerless raw file [default: 0]
-        #[arg(long, value_name = "BYTES")]
+        #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
         raw_offset: u64,
 
         /// Edge of the octree's leaves in voxels, 4 to 32; never changes the picture [default: 8]
-        #[arg(long, value_name = "VOXELS")]
+        #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         octree_leaf: u32,
     }
 }
 
 impl VolumeOptions {
-    /// The octree's leaf edge where none is given: level 3 of the paper's hierarchy.
-    pub const DEFAULT_LEAF: u32 = 8;
-
-    /// With every default in its place. The layout of a raw file has none: other files have their
-    /// own.
+    /// With every default in its place. The layout of a raw file has none, since other files have
+    /// their own; nor has the octree, which never changes the picture.
     #[must_use]
     pub(super) fn filled(self) -> Self {
         Self {
             frame: self.frame.or(Some(0)),
             smooth: self.smooth.or(SigmaMm::new(0.0).ok()),
             non_finite: Some(self.non_finite.unwrap_or_default()),
-            octree_leaf: self.octree_leaf.or(Some(Self::DEFAULT_LEAF)),
             ..self
         }
     }

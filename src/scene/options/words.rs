@@ -1,7 +1,7 @@
 //! Choices by name: what a flag calls each, in one place.
 
 use super::plain::plain;
-use crate::scene::{Filter, Traverse};
+use crate::scene::{Filter, RefineMethod, Traverse};
 
 /// Gives an enum its names: `FromStr`, `Display`.
 macro_rules! words {
@@ -104,6 +104,8 @@ words!(View, "a view": Anterior = "anterior", Posterior = "posterior", Left = "l
     Right = "right", Superior = "superior", Inferior = "inferior");
 
 words!(Filter, "a filter": Nearest = "nearest", Linear = "linear");
+words!(RefineMethod, "a refiner": None = "none", Bisection = "bisection",
+    RegulaFalsi = "regula-falsi", Illinois = "illinois", Newton = "newton");
 words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
     Hierarchical = "hierarchical");
 

@@ -19,6 +19,11 @@ use super::text::{exactly, number};
 use crate::error::{Error, Result};
 use crate::volume::{Geometry, Rescale, Volume};
 
+/// Where a header says its voxels are; `None` where it makes no sense.
+pub(super) fn data_files(head: &[u8]) -> Option<DataFiles> {
+    Fields::parse(head).ok().and_then(|fields| fields.data)
+}
+
 /// The header's `Key = Value` lines, keys in lower case, and where they end.
 struct Fields {
     values: HashMap<String, String>,

@@ -14,11 +14,13 @@ mod npz;
 mod nrrd;
 mod nrrd_axes;
 mod numpy;
+mod parts;
 mod payload;
 mod raw;
 mod source;
 mod text;
 
+pub use parts::files_of;
 pub use raw::{RawLayout, RawSize, RawType};
 
 use std::path::Path;

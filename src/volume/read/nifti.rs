@@ -384,7 +384,7 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
 }
 
 /// The .img that belongs to a header, whatever the header is called.
-fn image_beside(header: &Path) -> Result<PathBuf> {
+pub(super) fn image_beside(header: &Path) -> Result<PathBuf> {
     let stem = stem(header, ".hdr").unwrap_or_else(|| header.with_extension("").into_os_string());
     existing(&stem, &[".img", ".img.gz", ".IMG", ".IMG.gz"]).ok_or_else(|| {
         Error::failed("this is the header of a NIfTI pair, but no .img lies beside it")

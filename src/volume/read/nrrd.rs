@@ -21,6 +21,11 @@ pub(super) fn is_nrrd(head: &[u8]) -> bool {
     head.starts_with(b"NRRD000")
 }
 
+/// Where a header says its voxels are; `None` where it makes no sense.
+pub(super) fn data_files(head: &[u8]) -> Option<DataFiles> {
+    Fields::parse(head).ok().map(|fields| fields.data)
+}
+
 /// The header's fields under their names in lower case without blanks (`data file` and `datafile`
 /// are one), and where its lines end.
 pub(super) struct Fields {

@@ -274,7 +274,7 @@ fn the_switches_are_read_from_the_kernels() {
         named(&[("COUNTERS", 2), ("LAYERS", 2)])
     );
     assert_eq!(
-        of("pass/cast_projection.cl"),
+        of("pass/cast_maximum.cl"),
         named(&[("COUNTERS", 2), ("LAYERS", 2), ("PROJECTION", 3)])
     );
     assert_eq!(

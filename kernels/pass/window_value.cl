@@ -1,7 +1,7 @@
 // The grey of each projected value: sRGB-encoded grey linear from the window's low to its high end,
 // written as linear light, opaque where the ray met the volume.
 //
-// Reads kind and value of cast_projection; the window is in stored units like it. Writes color.
+// Reads kind and value of cast_maximum; the window is in stored units like it. Writes color.
 #include "lib/color.clh"
 #include "lib/ray.clh"
 

@@ -27,7 +27,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/shade.clh",
     "lib/transfer.clh",
     "pass/cast_emission.cl",
-    "pass/cast_projection.cl",
+    "pass/cast_maximum.cl",
     "pass/cast_surface.cl",
     "pass/shade_surface.cl",
     "pass/surface_normal.cl",

@@ -10,7 +10,7 @@ use crate::volume::Volume;
 use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
 use super::passes::{
-    DeviceTransfer, DeviceVolume, Run, cast_emission, cast_projection, cast_surface, shade_surface,
+    DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, shade_surface,
     surface_normal, window_value,
 };
 use super::planes::Planes;
@@ -137,7 +137,7 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
     let mut value = run.plane("value plane")?;
     let mut depth = wanted.depth.then(|| run.plane("depth plane")).transpose()?;
     let mut counters = run.counters(wanted.counters)?;
-    cast_projection(
+    cast_maximum(
         run,
         which,
         view.uploaded,

@@ -101,7 +101,7 @@ const fn reflection_constant(reflection: Reflection) -> u32 {
     }
 }
 
-/// The loops of `cast_projection`.
+/// The loops of `cast_maximum`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ProjectionLoop {
     Extremum = 0,

@@ -1,7 +1,7 @@
 //! One typed function per kernel of `kernels/pass`: `&` is read, `&mut` is written.
 
 mod cast_emission;
-mod cast_projection;
+mod cast_maximum;
 mod cast_surface;
 mod shade_surface;
 mod surface_normal;
@@ -22,7 +22,7 @@ use super::abi::VolumeGrid;
 use super::variant::{Variant, voxel_cl_name};
 
 pub use cast_emission::{DeviceTransfer, cast_emission};
-pub use cast_projection::cast_projection;
+pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;
 pub use shade_surface::shade_surface;
 pub use surface_normal::surface_normal;

@@ -8,8 +8,8 @@
 // either end counts when the value falls away from it.
 //
 // Reads the voxels and, per octree node, its range. Writes per pixel kind (surface where the ray
-// meets the volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the eye; +inf for the mean);
-// with COUNTERS the samples taken and the nodes tested.
+// meets the volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the
+// eye; +inf for the mean); with COUNTERS the samples taken and the nodes tested.
 #include "lib/octree.clh"
 #include "lib/peak.clh"
 
@@ -17,7 +17,7 @@
 #error "PROJECTION, which value is wanted, is given by the host"
 #endif
 
-kernel void cast_projection(const global VOXEL *voxels, const global float2 *node_range, const global uint4 *levels,
+kernel void cast_maximum(const global VOXEL *voxels, const global float2 *node_range, const global uint4 *levels,
                             VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                             global uint *kind, global float *value
 #if LAYERS

@@ -1,4 +1,4 @@
-//! `kernels/pass/cast_projection.cl`
+//! `kernels/pass/cast_maximum.cl`
 
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
@@ -10,7 +10,7 @@ use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
 /// One value per ray in stored units, `kind` where the ray meets the volume, and the `depth` (mm from the
 /// eye) at which it was found.
 #[allow(clippy::too_many_arguments)]
-pub fn cast_projection(
+pub fn cast_maximum(
     run: &mut Run,
     which: ProjectionLoop,
     volume: &DeviceVolume,
@@ -28,7 +28,7 @@ pub fn cast_projection(
         .with("PROJECTION", format!("{}u", which as u32))
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
-    let pass = run.built.pass(run.device, "cast_projection", defines, || {
+    let pass = run.built.pass(run.device, "cast_maximum", defines, || {
         let mut signature = vec![
             voxels(variant),
             input::<[f32; 2]>("node_range"),

@@ -14,16 +14,27 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 
+libraries="$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)"
+have_library() {
+    case "$1" in /*) [ -e "$1" ] && return 0 ;; esac
+    case "$libraries" in *"$1"*) return 0 ;; esac
+    compgen -G "/usr/lib*/$1" >/dev/null || compgen -G "/usr/lib/*/$1" >/dev/null
+}
 have_loader() {
     [ "$(uname -s)" = Darwin ] && return 0 # a framework of the system
-    local known
-    known="$(PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null || true)"
-    case "$known" in *libOpenCL.so.1*) return 0 ;; esac
-    compgen -G '/usr/lib*/libOpenCL.so.1' >/dev/null || compgen -G '/usr/lib/*/libOpenCL.so.1' >/dev/null
+    have_library libOpenCL.so.1
 }
+# A driver's .icd file names its library; the file can outlive the package that brought both.
 have_driver() {
     [ "$(uname -s)" = Darwin ] && return 0
-    [ -n "${OCL_ICD_VENDORS:-}" ] || compgen -G '/etc/OpenCL/vendors/*.icd' >/dev/null
+    [ -n "${OCL_ICD_VENDORS:-}" ] && return 0
+    local icd library
+    for icd in /etc/OpenCL/vendors/*.icd; do
+        [ -r "$icd" ] || continue
+        read -r library <"$icd" || true
+        [ -n "$library" ] && have_library "$library" && return 0
+    done
+    return 1
 }
 have_clang() { command -v clang >/dev/null || compgen -G '/usr/bin/clang-[0-9]*' >/dev/null; }
 

@@ -141,6 +141,7 @@ fn a_negative_number_reaches_its_flag() {
         "--work-group",
         "--color",
         "--background",
+        "--clip-plane",
     ] {
         let said = said(render, flag);
         assert!(

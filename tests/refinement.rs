@@ -67,6 +67,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
             color: Rgb([1.0; 3]),
             phong: None,
         },
+        clip_planes: Vec::new(),
         sampling: Sampling {
             step_voxels: STEP_VOXELS,
             ..Sampling::default()

@@ -1,10 +1,13 @@
-// The unit normal where each ray hit: toward lower values, in world space; a cap's is its face's
-// outward normal. Zero where nothing was hit.
+// The unit normal where each ray hit: toward lower values, in world space; a cap's is the
+// outward normal of its face or clip plane. Zero where nothing was hit.
 //
-// Reads hit_mm and kind of cast_surface. Writes normal (w = 0).
+// Reads the voxels, hit_mm and kind of cast_surface, and the clip planes (index space). Writes
+// normal (w = 0).
+#include "lib/clip.clh"
 #include "lib/field.clh"
 
-kernel void surface_normal(const global VOXEL *voxels, VolumeGrid volume, RayGrid rays,
+kernel void surface_normal(const global VOXEL *voxels, const global float4 *clip_planes, uint clip_count,
+                           VolumeGrid volume, RayGrid rays,
                            const global float *hit_mm, const global uint *kind, global float4 *normal)
 {
     uint i = get_global_id(0);
@@ -19,11 +22,8 @@ kernel void surface_normal(const global VOXEL *voxels, VolumeGrid volume, RayGri
         float3 toward_eye = -ray.dir_world;
         if (kind[pixel] == KIND_CAP) {
             Interval interval = volume_interval(volume, ray);
-            float3 outward = (float3)(
-                interval.axis == 0u ? (ray.dir.x > 0.0f ? -1.0f : 1.0f) : 0.0f,
-                interval.axis == 1u ? (ray.dir.y > 0.0f ? -1.0f : 1.0f) : 0.0f,
-                interval.axis == 2u ? (ray.dir.z > 0.0f ? -1.0f : 1.0f) : 0.0f);
-            n = world_normal(volume, outward, toward_eye);
+            clip_interval(&interval, clip_planes, clip_count, ray);
+            n = world_normal(volume, entry_covector(interval, clip_planes, ray), toward_eye);
         } else {
             float3 p = clamp_to_domain(volume, ray.origin + hit_mm[pixel] * ray.dir);
             n = field_normal(voxels, volume, p, toward_eye);

@@ -17,6 +17,7 @@ macro_rules! embedded {
 /// Every kernel file, its path below `kernels/`.
 const FILES: &[(&str, &str)] = embedded![
     "lib/abi.clh",
+    "lib/clip.clh",
     "lib/color.clh",
     "lib/field.clh",
     "lib/lattice.clh",
@@ -35,6 +36,7 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/window_value.cl",
     "test/abi.cl",
     "test/absorption.cl",
+    "test/clip.cl",
     "test/color.cl",
     "test/field.cl",
     "test/interval.cl",

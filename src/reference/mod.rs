@@ -7,6 +7,7 @@
 //! is integrated adaptively between the points where its integrand is not smooth.
 
 mod cells;
+mod clip;
 mod collocation;
 mod cubic;
 mod emission;

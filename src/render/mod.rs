@@ -2,6 +2,7 @@
 
 mod abi;
 mod classify;
+mod clip;
 mod passes;
 mod picture;
 mod pipeline;

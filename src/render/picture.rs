@@ -9,6 +9,7 @@ use crate::volume::Volume;
 
 use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
+use super::clip::DeviceClip;
 use super::passes::{
     DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, shade_surface,
     surface_normal, window_value,
@@ -24,6 +25,7 @@ pub struct View<'a> {
     pub volume: &'a Volume,
     pub octree: &'a Octree,
     pub uploaded: &'a DeviceVolume,
+    pub clip: &'a DeviceClip,
     pub rays: RayGrid,
 }
 
@@ -75,6 +77,7 @@ pub fn surface(
     cast_surface(
         run,
         view.uploaded,
+        view.clip,
         &node_class,
         &view.rays,
         &cast,
@@ -86,7 +89,15 @@ pub fn surface(
 
     let normal = if wanted.normal || phong.is_some() {
         let mut normal = run.plane("normal plane")?;
-        surface_normal(run, view.uploaded, &view.rays, &hit_mm, &kind, &mut normal)?;
+        surface_normal(
+            run,
+            view.uploaded,
+            view.clip,
+            &view.rays,
+            &hit_mm,
+            &kind,
+            &mut normal,
+        )?;
         Some(normal)
     } else {
         None
@@ -141,6 +152,7 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         run,
         which,
         view.uploaded,
+        view.clip,
         &view.rays,
         &cast,
         &mut kind,
@@ -208,6 +220,7 @@ pub fn emission(
         run,
         phong.is_some(),
         view.uploaded,
+        view.clip,
         &node_class,
         &on_device,
         &view.rays,

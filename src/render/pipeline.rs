@@ -10,6 +10,7 @@ use crate::octree::Octree;
 use crate::scene::{Picture, Sampling, Scene};
 use crate::volume::Volume;
 
+use super::clip::DeviceClip;
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
 use super::planes::check_room;
@@ -124,12 +125,15 @@ impl<'a> Renderer<'a> {
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling),
         };
+        let world_from_index = self.volume.geometry().world_from_index();
+        let clip = DeviceClip::upload(self.device, &scene.clip_planes, world_from_index)?;
         let view = View {
             scene,
             wanted,
             volume: self.volume,
             octree: self.octree,
             uploaded: &self.uploaded,
+            clip: &clip,
             rays: ray_grid(&scene.camera, scene.size, self.volume),
         };
         let mut planes = match &scene.picture {
@@ -167,7 +171,7 @@ impl<'a> Renderer<'a> {
             build_ms: self.built.build_ms() - build_ms_before,
             upload_ms: std::mem::take(&mut self.upload_ms),
             render_ms,
-            device_bytes: self.uploaded.bytes() + planes.bytes(),
+            device_bytes: self.uploaded.bytes() + clip.planes.bytes() + planes.bytes(),
         })
     }
 }

@@ -4,7 +4,8 @@ use crate::frame::Kind;
 use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
 use crate::scene::{
-    Filter, Phong, Refine, RefineMethod, Reflection, Sampling, TransferFunction, Traverse,
+    ClipPlane, Filter, Phong, Refine, RefineMethod, Reflection, Sampling, TransferFunction,
+    Traverse,
 };
 use crate::volume::{Volume, VoxelType};
 
@@ -114,6 +115,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
     ("TRANSFER_MOST_KNOTS", TransferFunction::MAX_KNOTS as u32),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),

@@ -4,6 +4,7 @@
 //! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.
 
 mod camera;
+mod clip;
 mod color;
 mod light;
 pub(crate) mod options;
@@ -15,6 +16,7 @@ mod transfer_file;
 mod view;
 
 pub use camera::{Camera, Lens, Ray};
+pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
@@ -32,6 +34,8 @@ pub struct Scene {
     pub size: ImageSize,
     pub camera: Camera,
     pub picture: Picture,
+    /// At most [`ClipPlane::MOST`]: a ray sees what lies on the kept side of all.
+    pub clip_planes: Vec<ClipPlane>,
     pub sampling: Sampling,
     pub light: Light,
     pub tone: Tone,

@@ -91,6 +91,7 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         size: ImageSize::new(size_px, size_px).unwrap(),
         camera: camera(volume, OBLIQUE),
         picture,
+        clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::default(),
         tone: Tone::default(),

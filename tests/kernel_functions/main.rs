@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod clip;
 mod color;
 mod field;
 mod interval;

@@ -71,6 +71,7 @@ pub fn scene(picture: Picture) -> Scene {
         size: ImageSize::new(8, 8).unwrap(),
         camera: Camera::look_at(DVec3::NEG_Y * 100.0, DVec3::ZERO, DVec3::Z, lens).unwrap(),
         picture,
+        clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::Headlight,
         tone: Tone::default(),

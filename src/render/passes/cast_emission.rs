@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
 /// A transfer function on the device, knots ascending in stored units.
 pub struct DeviceTransfer {
@@ -19,6 +19,7 @@ pub fn cast_emission(
     run: &mut Run,
     shaded: bool,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -40,6 +41,8 @@ pub fn cast_emission(
             levels(),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
             value::<EmissionCast>("cast"),
@@ -56,6 +59,8 @@ pub fn cast_emission(
         .input(&volume.levels)
         .input(&transfer.values)
         .input(&transfer.colors)
+        .input(&clip.planes)
+        .value(&clip.count)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -4,12 +4,13 @@ use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, VolumeGrid};
 
-use super::{DeviceVolume, Run, voxels};
+use super::{DeviceClip, DeviceVolume, Run, voxels};
 
 /// The unit world-space `normal` where each ray hit, toward lower values; zero elsewhere.
 pub fn surface_normal(
     run: &mut Run,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     rays: &RayGrid,
     hit_mm: &Buffer<f32>,
     kind: &Buffer<u32>,
@@ -21,6 +22,8 @@ pub fn surface_normal(
         .pass(run.device, "surface_normal", variant.defines(), || {
             vec![
                 voxels(variant),
+                DeviceClip::planes_parameter(),
+                DeviceClip::count_parameter(),
                 value::<VolumeGrid>("volume"),
                 value::<RayGrid>("rays"),
                 input::<f32>("hit_mm"),
@@ -30,6 +33,8 @@ pub fn surface_normal(
         })?;
     pass.launch(run.device)
         .input(&volume.voxels)
+        .input(&clip.planes)
+        .value(&clip.count)
         .value(&volume.grid)
         .value(rays)
         .input(hit_mm)

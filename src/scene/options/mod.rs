@@ -9,6 +9,7 @@
 //! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
 
 mod camera;
+mod clip;
 mod file;
 pub(crate) mod group;
 mod numbers;
@@ -23,6 +24,7 @@ mod volume;
 mod words;
 
 pub use camera::CameraOptions;
+pub use clip::ClipOptions;
 pub use file::{SceneFile, flag_names};
 pub(crate) use numbers::concise;
 pub use numbers::{
@@ -55,6 +57,9 @@ pub struct SceneOptions {
     pub camera: CameraOptions,
     #[command(flatten)]
     #[serde(flatten)]
+    pub clip: ClipOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
     pub sampling: SamplingOptions,
     #[command(flatten)]
     #[serde(flatten)]
@@ -79,6 +84,7 @@ impl SceneOptions {
         Self {
             volume: self.volume.over(file.volume),
             camera: self.camera.clone().over(self.camera.keep_of(file.camera)),
+            clip: self.clip.over(file.clip),
             picture: self
                 .picture
                 .clone()
@@ -97,6 +103,7 @@ impl SceneOptions {
     pub fn checked(mut self) -> Result<Self> {
         self.camera.check()?;
         self.picture.check()?;
+        self.clip.check()?;
         if let Some(choice) = self.picture.tf.take() {
             self.picture.tf = Some(TransferChoice::Written(choice.read()?));
         }
@@ -112,6 +119,7 @@ impl SceneOptions {
             volume: self.volume.clone().filled(),
             picture: self.picture.clone().filled(subject)?,
             camera: self.camera.clone().filled(subject)?,
+            clip: self.clip.clone().filled()?,
             sampling: self.sampling.clone().filled()?,
             tone: self.tone.clone().filled()?,
         };
@@ -119,6 +127,7 @@ impl SceneOptions {
             size: options.camera.size()?,
             camera: options.camera.camera()?,
             picture: options.picture.picture(subject.range)?,
+            clip_planes: options.clip.planes().to_vec(),
             sampling: options.sampling.sampling(),
             light: options.picture.light(),
             tone: options.tone.tone(),
@@ -174,6 +183,7 @@ impl SceneOptions {
             let (low, high) = (end(filled.low), end(filled.high));
             notes.push(format!("window = {ends} is {low},{high}"));
         }
+        notes.extend(filled.clip.notes(subject));
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {
             let preset = TransferFile::DEFAULT_PRESET;
             notes.push(format!("tf = {preset}: --tf chooses another"));

@@ -33,7 +33,7 @@ group! {
         #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
         iso: Threshold,
 
-        /// iso: close the surface where the volume ends [default: on]
+        /// iso: close the surface where the volume ends or is clipped [default: on]
         #[arg(long, value_name = "on|off")]
         caps: Switch,
 

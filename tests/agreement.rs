@@ -7,8 +7,8 @@ mod common;
 use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
-    Camera, ClipPlane, Filter, Knot, Lens, Light, Phong, Picture, Projection, Reflection, Rgb,
-    Scene, Tone, TransferFunction, Window,
+    Camera, ClipPlane, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection, Reflection,
+    Rgb, Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -50,6 +50,7 @@ struct Row {
     /// Of planes about the volume's centre: the normal, and how far, in radii of the bounding
     /// sphere, the plane lies beyond it.
     clip: &'static [([f64; 3], f64)],
+    gradient: Gradient,
     filter: Filter,
     step_voxels: f64,
     /// Brightness, contrast, gamma, background.
@@ -64,6 +65,7 @@ const PLAIN: Row = Row {
     toward_light: None,
     from: From::Outside,
     clip: &[],
+    gradient: Gradient::Central,
     filter: Filter::Linear,
     step_voxels: 0.5,
     tone: (0.0, 1.0, 1.0, [0.0; 3]),
@@ -106,6 +108,15 @@ const ROWS: &[Row] = &[
     Row { clip: WEDGE, look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     Row { volume: "u16", clip: WEDGE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
     Row { volume: "falling", clip: WEDGE, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    // Gradients.
+    Row { gradient: Gradient::Forward, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
+    Row { gradient: Gradient::FourthOrder, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
+    Row { gradient: Gradient::FourthOrder, filter: Filter::Nearest, limits: &[(NormalMean, 6.0)], ..PLAIN },
+    Row { gradient: Gradient::Forward, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "u16", gradient: Gradient::FourthOrder, limits: &[(NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "i16", gradient: Gradient::FourthOrder, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "falling", gradient: Gradient::Forward, limits: &[(NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "sheet", gradient: Gradient::FourthOrder, look: iso("regula-falsi", false), limits: &[(NormalMean, 0.01)], ..PLAIN },
     // Shading and tone.
     Row { limits: &[(ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: PHONG, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
@@ -323,6 +334,7 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
         ClipPlane::new(normal, offset).unwrap()
     };
     scene.clip_planes = row.clip.iter().map(plane).collect();
+    scene.gradient = row.gradient;
     scene.sampling.filter = row.filter;
     scene.sampling.step_voxels = row.step_voxels;
     if let Some(toward) = row.toward_light {
@@ -343,12 +355,13 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
 fn describe(row: &Row) -> String {
     let light = row.toward_light.map_or("headlight", |_| "distant light");
     format!(
-        "{} {:?} {:?} {light} {:?} {} planes {:?} step {}",
+        "{} {:?} {:?} {light} {:?} {} planes {:?} {:?} step {}",
         row.volume,
         row.look,
         row.reflection,
         row.from,
         row.clip.len(),
+        row.gradient,
         row.filter,
         row.step_voxels
     )

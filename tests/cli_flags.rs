@@ -142,6 +142,8 @@ fn a_negative_number_reaches_its_flag() {
         "--color",
         "--background",
         "--clip-plane",
+        "--gradient-scale",
+        "--gradient-smooth",
     ] {
         let said = said(render, flag);
         assert!(

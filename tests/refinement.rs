@@ -7,7 +7,7 @@ use angioray::extent::ImageSize;
 use angioray::frame::Wanted;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Camera, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, Scene, Tone,
+    Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, Scene, Tone,
 };
 use angioray::volume::Volume;
 use common::volume_of;
@@ -73,6 +73,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
             ..Sampling::default()
         },
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;

@@ -1,12 +1,18 @@
 // The unit normal where each ray hit: toward lower values, in world space; a cap's is the
 // outward normal of its face or clip plane. Zero where nothing was hit.
 //
-// Reads the voxels, hit_mm and kind of cast_surface, and the clip planes (index space). Writes
+// Reads the voxels or, with GRADIENT_PRECOMPUTED, directions of gradients, hit_mm and kind of cast_surface, and the clip planes (index space). Writes
 // normal (w = 0).
 #include "lib/clip.clh"
-#include "lib/field.clh"
+#include "lib/gradient.clh"
 
-kernel void surface_normal(const global VOXEL *voxels, const global float4 *clip_planes, uint clip_count,
+kernel void surface_normal(
+#if GRADIENT == GRADIENT_PRECOMPUTED
+                           const global short *directions, uint4 direction_grid,
+#else
+                           const global VOXEL *voxels,
+#endif
+                           const global float4 *clip_planes, uint clip_count,
                            VolumeGrid volume, RayGrid rays,
                            const global float *hit_mm, const global uint *kind, global float4 *normal)
 {
@@ -26,7 +32,14 @@ kernel void surface_normal(const global VOXEL *voxels, const global float4 *clip
             n = world_normal(volume, entry_covector(interval, clip_planes, ray), toward_eye);
         } else {
             float3 p = clamp_to_domain(volume, ray.origin + hit_mm[pixel] * ray.dir);
-            n = field_normal(voxels, volume, p, toward_eye);
+            GradientSource source;
+#if GRADIENT == GRADIENT_PRECOMPUTED
+            source.directions = directions;
+            source.grid = direction_grid;
+#else
+            source.voxels = voxels;
+#endif
+            n = field_normal(source, volume, p, toward_eye);
         }
     }
     normal[pixel] = (float4)(n, 0.0f);

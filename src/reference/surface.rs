@@ -1,9 +1,10 @@
 //! The isosurface: where Φ ≥ iso first changes along a ray.
 
 use crate::frame::Kind;
+use crate::scene::Gradient;
 use crate::volume::Voxel;
 
-use super::cells::{Segment, Walk};
+use super::cells::Walk;
 use super::field::{Field, bounds};
 use super::interval::{Entry, Interval};
 
@@ -40,6 +41,7 @@ pub fn first_crossing<T: Voxel>(
     interval: &Interval,
     iso: f64,
     caps: bool,
+    gradient: Gradient,
 ) -> (Option<Crossing>, u32) {
     let mut walked = 0;
     let mut inside = None;
@@ -56,7 +58,9 @@ pub fn first_crossing<T: Voxel>(
         let crossing = |s: f64| Crossing {
             at_mm: segment.at_mm(s),
             value: phi.at(s),
-            gradient: gradient_at(field, &segment, s),
+            gradient: field
+                .gradient(&segment, gradient)
+                .map(|component| component.at(s)),
             cap: None,
         };
         if walked == 1 && inside && caps && interval.entry.is_some() {
@@ -81,8 +85,4 @@ pub fn first_crossing<T: Voxel>(
         }
     }
     (None, walked)
-}
-
-fn gradient_at<T: Voxel>(field: &Field<T>, segment: &Segment, s: f64) -> [f64; 3] {
-    field.gradient(segment).map(|component| component.at(s))
 }

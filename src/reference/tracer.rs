@@ -49,7 +49,7 @@ impl Sight {
 }
 
 /// A volume and a scene, prepared for casting rays. Of the scene it uses the picture, the clip
-/// planes, the light and the filter; step, refinement, traversal and early termination are the device's alone.
+/// planes, the light, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
 pub struct Tracer<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
@@ -117,7 +117,8 @@ impl<'a> Tracer<'a> {
     fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
-                let (crossing, cells) = first_crossing(field, interval, *iso, *caps);
+                let (crossing, cells) =
+                    first_crossing(field, interval, *iso, *caps, self.scene.gradient);
                 let seen = crossing.map_or(Sight::NOTHING, |crossing| {
                     self.surface(&crossing, interval, dir_world)
                 });
@@ -181,6 +182,7 @@ impl<'a> Tracer<'a> {
         };
         let shading = phong.map(|phong| Shading {
             lighting: Lighting::new(phong, self.scene.light, dir_world),
+            gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
         });
         let emitted = emission::integrate(field, interval, medium, shading.as_ref());

@@ -3,6 +3,8 @@
 mod abi;
 mod classify;
 mod clip;
+mod directions;
+mod gradient;
 mod passes;
 mod picture;
 mod pipeline;
@@ -11,6 +13,8 @@ mod rays;
 mod twins;
 mod variant;
 
+pub use directions::{AngleError, Directions};
+pub use gradient::GradientFigures;
 pub use pipeline::{Options, Renderer, Rendering};
 pub use twins::struct_layouts;
 pub use variant::Variant;

@@ -10,6 +10,7 @@ use crate::volume::Volume;
 use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
 use super::clip::DeviceClip;
+use super::gradient::DeviceGradient;
 use super::passes::{
     DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, shade_surface,
     surface_normal, window_value,
@@ -26,6 +27,7 @@ pub struct View<'a> {
     pub octree: &'a Octree,
     pub uploaded: &'a DeviceVolume,
     pub clip: &'a DeviceClip,
+    pub gradient: DeviceGradient<'a>,
     pub rays: RayGrid,
 }
 
@@ -92,6 +94,7 @@ pub fn surface(
         surface_normal(
             run,
             view.uploaded,
+            view.gradient,
             view.clip,
             &view.rays,
             &hit_mm,
@@ -218,7 +221,7 @@ pub fn emission(
     let mut counters = run.counters(view.wanted.counters)?;
     cast_emission(
         run,
-        phong.is_some(),
+        phong.map(|_| view.gradient),
         view.uploaded,
         view.clip,
         &node_class,

@@ -6,6 +6,7 @@
 mod camera;
 mod clip;
 mod color;
+mod gradient;
 mod light;
 pub(crate) mod options;
 mod picture;
@@ -18,6 +19,7 @@ mod view;
 pub use camera::{Camera, Lens, Ray};
 pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use gradient::{Gradient, Precomputed};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
 pub use picture::{Picture, Projection, Window};
@@ -38,6 +40,8 @@ pub struct Scene {
     pub clip_planes: Vec<ClipPlane>,
     pub sampling: Sampling,
     pub light: Light,
+    /// Of normals, in the layer and in shading.
+    pub gradient: Gradient,
     pub tone: Tone,
 }
 

@@ -9,7 +9,7 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Camera, Lens, Light, Picture, Sampling, Scene, Tone};
+use angioray::scene::{Camera, Gradient, Lens, Light, Picture, Sampling, Scene, Tone};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
 
@@ -94,6 +94,7 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     }
 }

@@ -7,6 +7,7 @@ mod common;
 mod clip;
 mod color;
 mod field;
+mod gradient;
 mod interval;
 mod peak;
 mod reflection;

@@ -3,8 +3,8 @@
 use angioray::extent::{Dims, ImageSize};
 use angioray::reference::{Sight, Tracer};
 use angioray::scene::{
-    Camera, Filter, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb, Sampling, Scene,
-    Tone, TransferFunction, Window,
+    Camera, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb, Sampling,
+    Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DQuat, DVec3};
@@ -74,6 +74,7 @@ pub fn scene(picture: Picture) -> Scene {
         clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::Headlight,
+        gradient: Gradient::default(),
         tone: Tone::default(),
     }
 }

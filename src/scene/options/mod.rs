@@ -11,6 +11,7 @@
 mod camera;
 mod clip;
 mod file;
+mod gradient;
 pub(crate) mod group;
 mod numbers;
 mod picture;
@@ -26,10 +27,11 @@ mod words;
 pub use camera::CameraOptions;
 pub use clip::ClipOptions;
 pub use file::{SceneFile, flag_names};
+pub use gradient::GradientScale;
 pub(crate) use numbers::concise;
 pub use numbers::{
     AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
-    StepVoxels, Termination, Zoom,
+    SigmaVoxels, StepVoxels, Termination, Zoom,
 };
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;
@@ -37,7 +39,7 @@ pub use subject::Subject;
 pub use tone::ToneOptions;
 pub use values::{CArm, LightChoice, SpacingMm, SrgbColor, Threshold, Triple, WindowEnds};
 pub use volume::{FilePath, RawSizeText, VolumeOptions};
-pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
+pub use words::{GradientMethod, Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
@@ -130,6 +132,7 @@ impl SceneOptions {
             clip_planes: options.clip.planes().to_vec(),
             sampling: options.sampling.sampling(),
             light: options.picture.light(),
+            gradient: options.picture.gradient()?,
             tone: options.tone.tone(),
         };
         let notes = self.notes(&options, subject);

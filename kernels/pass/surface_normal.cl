@@ -31,7 +31,7 @@ kernel void surface_normal(
             clip_interval(&interval, clip_planes, clip_count, ray);
             n = world_normal(volume, entry_covector(interval, clip_planes, ray), toward_eye);
         } else {
-            float3 p = clamp_to_domain(volume, ray.origin + hit_mm[pixel] * ray.dir);
+            float3 p = clamp_to_domain(volume, ray_at(ray, hit_mm[pixel]).high);
             GradientSource source;
 #if GRADIENT == GRADIENT_PRECOMPUTED
             source.directions = directions;

@@ -16,7 +16,9 @@ kernel void clip(uint count, const global uint4 *sizes, const global float4 *pla
     volume.nz = sizes[i].z;
     Ray ray;
     ray.origin = origins[i].xyz;
+    ray.origin_low = (float3)(0.0f);
     ray.dir = dirs[i].xyz;
+    ray.dir_low = (float3)(0.0f);
     Interval found = volume_interval(volume, ray);
     clip_interval(&found, planes + sizes[i].w, counts[i], ray);
     inside[i] = (float2)(found.enter, found.exit);

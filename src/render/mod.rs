@@ -10,6 +10,7 @@ mod picture;
 mod pipeline;
 mod planes;
 mod rays;
+mod reach;
 mod twins;
 mod variant;
 

@@ -23,7 +23,7 @@ pub use gradient::{Gradient, Precomputed};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
 pub use picture::{Picture, Projection, Window};
-pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
+pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Traverse};
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};
 pub use view::{Orientation, fit_distance_mm};

@@ -13,8 +13,8 @@ use angioray::extent::ImageSize;
 use angioray::frame::Frame;
 use angioray::gpu::Device;
 use angioray::scene::{
-    Camera, ClipPlane, Knot, Lens, Picture, Projection, Refine, Rgb, Scene, TransferFunction,
-    Window,
+    Camera, ClipPlane, Knot, Lens, Picture, Projection, Refine, Rgb, SamplingMethod, Scene,
+    TransferFunction, Window,
 };
 use angioray::volume::{Geometry, Volume};
 use common::{on_device, on_reference, volume_with};
@@ -24,6 +24,8 @@ use glam::{DMat3, DQuat, DVec3};
 struct Engine {
     name: &'static str,
     device: Option<Device>,
+    /// On the device, of surfaces and projections.
+    method: SamplingMethod,
     depth_voxels: f64,
 }
 
@@ -32,14 +34,24 @@ fn engines() -> Vec<Engine> {
     let reference = Engine {
         name: "reference",
         device: None,
+        method: SamplingMethod::Exact,
         // Planes hold single precision.
         depth_voxels: 1e-5,
     };
-    let on_device = common::device().map(|device| Engine {
-        name: "device",
-        device: Some(device),
-        depth_voxels: 2e-4,
-    });
+    let on_device = |(name, method)| {
+        common::device().map(|device| Engine {
+            name,
+            device: Some(device),
+            method,
+            depth_voxels: 2e-4,
+        })
+    };
+    let on_device = [
+        ("fixed steps", SamplingMethod::Fixed),
+        ("exact", SamplingMethod::Exact),
+    ]
+    .into_iter()
+    .filter_map(on_device);
     std::iter::once(reference).chain(on_device).collect()
 }
 
@@ -47,7 +59,15 @@ impl Engine {
     fn frames(&self, volume: &Volume, scenes: &[Scene]) -> Vec<Frame> {
         match &self.device {
             None => scenes.iter().map(|s| on_reference(volume, s)).collect(),
-            Some(device) => on_device(device, volume, scenes),
+            Some(device) => {
+                let mut scenes = scenes.to_vec();
+                for scene in &mut scenes {
+                    if !matches!(scene.picture, Picture::Emission { .. }) {
+                        scene.sampling.method = self.method;
+                    }
+                }
+                on_device(device, volume, &scenes)
+            }
         }
     }
 }

@@ -15,6 +15,7 @@ pub fn cast_maximum(
     which: ProjectionLoop,
     volume: &DeviceVolume,
     clip: &DeviceClip,
+    node_class: &Buffer<u8>,
     rays: &RayGrid,
     cast: &ProjectionCast,
     kind: &mut Buffer<u32>,
@@ -32,6 +33,7 @@ pub fn cast_maximum(
     let pass = run.built.pass(run.device, "cast_maximum", defines, || {
         let mut signature = vec![
             voxels(variant),
+            input::<u8>("node_class"),
             input::<[f32; 2]>("node_range"),
             levels(),
             DeviceClip::planes_parameter(),
@@ -51,6 +53,7 @@ pub fn cast_maximum(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
+        .input(node_class)
         .input(&volume.node_range)
         .input(&volume.levels)
         .input(&clip.planes)

@@ -20,6 +20,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("reference", &["volume", "scene", "frame"]),
     ("render", &["volume", "scene", "frame", "gpu", "octree"]),
     (
+        "bench",
+        &[
+            "volume",
+            "scene",
+            "frame",
+            "gpu",
+            "octree",
+            "reference",
+            "render",
+        ],
+    ),
+    (
         "cli",
         &[
             "volume",
@@ -30,6 +42,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "hardcases",
             "reference",
             "render",
+            "bench",
         ],
     ),
 ];

@@ -6,10 +6,12 @@ mod passes;
 mod picture;
 mod pipeline;
 mod planes;
+mod ray_caster;
 mod rays;
 mod twins;
 mod variant;
 
 pub use pipeline::{Options, Renderer, Rendering};
+pub use ray_caster::{FirstCrossing, RayCaster};
 pub use twins::struct_layouts;
 pub use variant::Variant;

@@ -103,7 +103,7 @@ fn non_finite() -> Result<HardVolume> {
         if n % 23.0 == 7.0 {
             strewn[(n / 23.0) as usize % 4]
         } else {
-            (10.0 + 90.0 * hash(p)) as f32
+            (90.0 * hash(p) - 50.0) as f32
         }
     });
     let bytes = voxels.iter().flat_map(|v| v.to_le_bytes()).collect();

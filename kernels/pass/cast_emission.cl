@@ -70,14 +70,9 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
             if (cast.traverse != TRAVERSE_OFF) {
                 cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
                 walk_on(&walk, span_cell, cell);
-                for (;;) {
-                    skip = node_class[node_index(levels, cell, walk.level)] != CLASS_VISIT;
-                    node_count++;
-                    if (skip || walk.level == 0u)
-                        break;
-                    walk.level--;
-                }
-                end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
+                uint byte = walk_down(&walk, node_class, levels, cell, &node_count);
+                skip = class_of(byte) != CLASS_VISIT;
+                end = span_end(volume, lattice, k, cell, node_box(cell, walk.level, reach_of(byte)), &span_cell);
             }
             for (; k < end && !skip && transmission >= cast.least_transmission; k++) {
                 float t = lattice_t(lattice, k);

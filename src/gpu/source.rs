@@ -17,10 +17,14 @@ macro_rules! embedded {
 /// Every kernel file, its path below `kernels/`.
 const FILES: &[(&str, &str)] = embedded![
     "lib/abi.clh",
+    "lib/cells.clh",
     "lib/color.clh",
+    "lib/crossing.clh",
+    "lib/cubic.clh",
     "lib/field.clh",
     "lib/lattice.clh",
     "lib/octree.clh",
+    "lib/pair.clh",
     "lib/peak.clh",
     "lib/ray.clh",
     "lib/refine.clh",
@@ -29,6 +33,8 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/cast_emission.cl",
     "pass/cast_maximum.cl",
     "pass/cast_surface.cl",
+    "pass/exact_projection.cl",
+    "pass/exact_surface.cl",
     "pass/shade_surface.cl",
     "pass/surface_normal.cl",
     "pass/tone_curve.cl",

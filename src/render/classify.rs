@@ -29,6 +29,18 @@ pub fn by_iso(octree: &Octree, iso: f32) -> Vec<u8> {
     })
 }
 
+/// Classes of all nodes against a floor in stored units, of sign · Φ: `Below` where nothing is above
+/// it.
+pub fn by_floor(octree: &Octree, sign: f32, floor: f32) -> Vec<u8> {
+    classes(octree, |[min, max]| {
+        if f32::max(sign * min, sign * max) <= floor {
+            Class::Below
+        } else {
+            Class::Visit
+        }
+    })
+}
+
 /// Classes of all nodes under a transfer function given by its knots, in stored units as the
 /// device has them: `Below` where every value of the node's range is fully transparent.
 pub fn by_opacity(octree: &Octree, values: &[f32], opacities: impl Fn(usize) -> f32) -> Vec<u8> {

@@ -8,6 +8,7 @@ mod pipeline;
 mod planes;
 mod ray_caster;
 mod rays;
+mod reach;
 mod twins;
 mod variant;
 

@@ -19,7 +19,7 @@ pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
 pub use picture::{Picture, Projection, Window};
-pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
+pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Traverse};
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};
 pub use view::{Orientation, fit_distance_mm};

@@ -3,6 +3,8 @@
 mod cast_emission;
 mod cast_maximum;
 mod cast_surface;
+mod exact_projection;
+mod exact_surface;
 mod shade_surface;
 mod surface_normal;
 mod tone_curve;
@@ -24,6 +26,8 @@ use super::variant::{Variant, voxel_cl_name};
 pub use cast_emission::{DeviceTransfer, cast_emission};
 pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;
+pub use exact_projection::exact_projection;
+pub use exact_surface::exact_surface;
 pub use shade_surface::shade_surface;
 pub use surface_normal::surface_normal;
 pub use tone_curve::tone_curve;

@@ -158,5 +158,6 @@ impl serde::Serialize for ImageSize {
 plain!(
     crate::scene::Refine,
     crate::scene::Filter,
+    crate::scene::SamplingMethod,
     crate::scene::Traverse,
 );

@@ -1,7 +1,7 @@
 //! Choices by name: what a flag calls each, in one place.
 
 use super::plain::plain;
-use crate::scene::{Filter, RefineMethod, Traverse};
+use crate::scene::{Filter, RefineMethod, SamplingMethod, Traverse};
 
 /// Gives an enum its names: `FromStr`, `Display`.
 macro_rules! words {
@@ -107,6 +107,7 @@ words!(Filter, "a filter": Nearest = "nearest", Linear = "linear");
 words!(RefineMethod, "a refiner": None = "none", Bisection = "bisection",
     RegulaFalsi = "regula-falsi", Illinois = "illinois", Newton = "newton");
 words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
-    Hierarchical = "hierarchical");
+    Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
+words!(SamplingMethod, "a sampling": Fixed = "fixed", Exact = "exact");
 
 plain!(Mode, Shading, Switch, NonFiniteRule, View);

@@ -107,7 +107,7 @@ pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
                 };
                 across(&format!("{degrees}-degrees"), toward, 40.0)
                     .size(41, 41)
-                    .iso(127.5, false)
+                    .iso(127.5, true)
             })
             .collect(),
         "step-edge" => {
@@ -130,7 +130,7 @@ pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
         .into_iter()
         .flat_map(|(name, toward)| {
             // Along an axis a ray through every voxel's centre.
-            let view = across(name, toward, 41.0).size(41, 41);
+            let view = across(name, toward, 40.0).size(40, 40);
             let fine = across(name, toward, 60.0).size(150, 150);
             let axis = toward.length_squared() == 1.0;
             if axis {

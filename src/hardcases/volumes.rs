@@ -20,7 +20,7 @@ pub fn scenes(name: &str, _member: usize, volume: &Volume) -> Vec<HardScene> {
             let view = whole.size(48, 48);
             vec![view.iso(120.0, true)]
         }
-        "wide-index" => vec![whole.size(41, 41).mip()],
+        "wide-index" => vec![whole.size(41, 41).iso(127.0, true)],
         "clip-planes" => vec![whole.size(41, 41).iso(127.0, true)],
         _ => {
             let view = whole.size(17, 17);

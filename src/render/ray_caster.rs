@@ -6,9 +6,7 @@ use std::collections::HashMap;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{Certificate, Kind};
-use crate::gpu::{
-    AnyBuffer, Buffer, Device, Pass, Timings, input, input_of, output, value,
-};
+use crate::gpu::{AnyBuffer, Buffer, Device, Pass, Timings, input, input_of, output, value};
 use crate::octree::Octree;
 use crate::scene::{Refine, Sampling};
 use crate::volume::Volume;

@@ -29,7 +29,10 @@ fn path_mm(seen: &Seen, pixel: usize) -> f64 {
     let dir = index.matrix3 * ray.dir_world;
     let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
     for (axis, (low, high)) in seen.volume.dims().domain().into_iter().enumerate() {
-        let (a, b) = ((low - origin[axis]) / dir[axis], (high - origin[axis]) / dir[axis]);
+        let (a, b) = (
+            (low - origin[axis]) / dir[axis],
+            (high - origin[axis]) / dir[axis],
+        );
         enter = enter.max(a.min(b));
         exit = exit.min(a.max(b));
     }
@@ -51,7 +54,12 @@ fn along_x(seen: &Seen, optical_depth: f64) -> Vec<String> {
     if seen.pixels() > 1 {
         return Vec::new();
     }
-    near("the opacity", seen.alpha(0), opacity(optical_depth), CLOSED_FORM)
+    near(
+        "the opacity",
+        seen.alpha(0),
+        opacity(optical_depth),
+        CLOSED_FORM,
+    )
 }
 
 /// Of a medium of opacity 0.03 each 2 mm.
@@ -59,17 +67,19 @@ fn constant_medium(seen: &Seen) -> Vec<String> {
     let mut lines = Vec::new();
     for pixel in 0..seen.pixels() {
         let expected = opacity(-(1.0_f64 - 0.03).ln() / 2.0 * path_mm(seen, pixel));
-        lines.extend(near(&format!("the opacity of pixel {pixel}"), seen.alpha(pixel), expected, 1e-5));
+        lines.extend(near(
+            &format!("the opacity of pixel {pixel}"),
+            seen.alpha(pixel),
+            expected,
+            1e-5,
+        ));
     }
     lines.truncate(3);
     lines
 }
 
 /// Opacities taken for those of a fixed step.
-const NO_LENGTH: Mutant = kernel(
-    "lib/transfer.clh",
-    &[("/ cast.unit_length_mm", "/ 2.5f")],
-);
+const NO_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
 
 /// Sums without compensation, and opacities without log1p.
 const LOST_DIGITS: Mutant = kernel(
@@ -79,7 +89,12 @@ const LOST_DIGITS: Mutant = kernel(
 
 #[test]
 fn homogeneous() {
-    judge("emission::homogeneous", "homogeneous", constant_medium, &[NO_LENGTH]);
+    judge(
+        "emission::homogeneous",
+        "homogeneous",
+        constant_medium,
+        &[NO_LENGTH],
+    );
 }
 
 #[test]
@@ -100,7 +115,12 @@ fn ramp() {
 
 #[test]
 fn gaussian() {
-    judge("emission::gaussian", "gaussian", |_| Vec::new(), &[NO_LENGTH]);
+    judge(
+        "emission::gaussian",
+        "gaussian",
+        |_| Vec::new(),
+        &[NO_LENGTH],
+    );
 }
 
 #[test]
@@ -113,13 +133,20 @@ fn tf_spike() {
 
 #[test]
 fn tf_stairs() {
-    judge("emission::tf_stairs", "tf-stairs", |_| Vec::new(), &[NO_LENGTH]);
+    judge(
+        "emission::tf_stairs",
+        "tf-stairs",
+        |_| Vec::new(),
+        &[NO_LENGTH],
+    );
 }
 
 #[test]
 fn tf_outside() {
     fn truth(seen: &Seen) -> Vec<String> {
-        let most = (0..seen.pixels()).map(|pixel| seen.alpha(pixel)).fold(0.0, f64::max);
+        let most = (0..seen.pixels())
+            .map(|pixel| seen.alpha(pixel))
+            .fold(0.0, f64::max);
         match seen.name {
             "transparent" | "clear-point" | "above" => near("the largest opacity", most, 0.0, 0.0),
             "opaque" => near("the largest opacity", most, 1.0, 1e-6),
@@ -127,7 +154,12 @@ fn tf_outside() {
             _ => {
                 let middle = seen.middle();
                 let expected = opacity(-(0.8_f64).ln() / 4.0 * path_mm(seen, middle));
-                near("the opacity in the middle", seen.alpha(middle), expected, 1e-5)
+                near(
+                    "the opacity in the middle",
+                    seen.alpha(middle),
+                    expected,
+                    1e-5,
+                )
             }
         }
     }
@@ -155,7 +187,12 @@ fn opaque_step() {
 fn faint_4096() {
     fn truth(seen: &Seen) -> Vec<String> {
         let expected = opacity(-4096.0 * (-1e-6_f64).ln_1p());
-        near("the opacity over the exact one", seen.alpha(0) / expected, 1.0, 1e-4)
+        near(
+            "the opacity over the exact one",
+            seen.alpha(0) / expected,
+            1.0,
+            1e-4,
+        )
     }
     judge("emission::faint_4096", "faint-4096", truth, &[LOST_DIGITS]);
 }
@@ -165,7 +202,12 @@ fn thin_bright_sheet() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, 110.0 / 255.0 * rising(0.5))
     }
-    judge("emission::thin_bright_sheet", "thin-bright-sheet", truth, &[]);
+    judge(
+        "emission::thin_bright_sheet",
+        "thin-bright-sheet",
+        truth,
+        &[],
+    );
 }
 
 #[test]
@@ -173,10 +215,20 @@ fn false_homogeneous() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, -14.4 * 0.5_f64.ln() + 3.2 * rising(0.5))
     }
-    judge("emission::false_homogeneous", "false-homogeneous", truth, &[]);
+    judge(
+        "emission::false_homogeneous",
+        "false-homogeneous",
+        truth,
+        &[],
+    );
 }
 
 #[test]
 fn anisotropic_1_1_10() {
-    judge("emission::anisotropic_1_1_10", "anisotropic-1-1-10", constant_medium, &[NO_LENGTH]);
+    judge(
+        "emission::anisotropic_1_1_10",
+        "anisotropic-1-1-10",
+        constant_medium,
+        &[NO_LENGTH],
+    );
 }

@@ -53,7 +53,10 @@ pub fn assert_caught(name: &str, file: &str, changes: &[(&str, &str)]) {
         .unwrap();
     let said = [output.stdout, output.stderr].concat();
     let said = String::from_utf8_lossy(&said);
-    assert!(said.contains("running 1 test"), "there is no test {name}: {said}");
+    assert!(
+        said.contains("running 1 test"),
+        "there is no test {name}: {said}"
+    );
     assert!(
         !output.status.success() && said.contains(CAUGHT),
         "{name} does not catch {changes:?} in {file}: {said}"

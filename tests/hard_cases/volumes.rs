@@ -27,7 +27,14 @@ pub const CASES: &[&str] = &[
 /// Like `volume`, with other voxels.
 fn with_voxels(volume: &Volume, voxels: Vec<f32>) -> Volume {
     let (dims, geometry) = (volume.dims(), *volume.geometry());
-    Volume::new(dims, Voxels::from(voxels), geometry, Rescale::IDENTITY, NonFinite::Refuse).unwrap()
+    Volume::new(
+        dims,
+        Voxels::from(voxels),
+        geometry,
+        Rescale::IDENTITY,
+        NonFinite::Refuse,
+    )
+    .unwrap()
 }
 
 #[test]
@@ -37,7 +44,10 @@ fn sizes() {
         "lib/ray.clh",
         &[
             ("return n == 1u ? -0.5f : 0.0f;", "return 0.0f;"),
-            ("return n == 1u ? 0.5f : (float)(n - 1u);", "return (float)(n - 1u);"),
+            (
+                "return n == 1u ? 0.5f : (float)(n - 1u);",
+                "return (float)(n - 1u);",
+            ),
         ],
     );
     judge("volumes::sizes", "sizes", |_| Vec::new(), &[flat]);
@@ -46,7 +56,9 @@ fn sizes() {
 #[test]
 fn constant() {
     fn truth(seen: &Seen) -> Vec<String> {
-        let caps = (0..seen.pixels()).filter(|&pixel| seen.kind(pixel) == 2).count();
+        let caps = (0..seen.pixels())
+            .filter(|&pixel| seen.kind(pixel) == 2)
+            .count();
         match seen.name {
             "iso77" => is("the volume is closed by caps", caps > 50),
             "mip" => near("the maximum", seen.value(seen.middle()), 77.0, 0.0),
@@ -55,7 +67,10 @@ fn constant() {
     }
     let never_above = kernel(
         "lib/crossing.clh",
-        &[("value = class == CLASS_ABOVE ? 1.0f : -1.0f;", "value = -1.0f;")],
+        &[(
+            "value = class == CLASS_ABOVE ? 1.0f : -1.0f;",
+            "value = -1.0f;",
+        )],
     );
     judge("volumes::constant", "constant", truth, &[never_above]);
 }
@@ -86,10 +101,13 @@ fn files_of_all_types_are_read_as_they_should_be() {
             made.write(&path, member % 2 == 1).unwrap();
             let found = read(&path, &ReadOptions::default(), &Silent).unwrap();
             assert_eq!(found.dims(), made.volume.dims());
-            assert_eq!(found.non_finite(), made.volume.non_finite(), "{name} {member}");
-            let physical = |volume: &Volume, i: usize| {
-                volume.rescale().physical(volume.voxels().stored(i))
-            };
+            assert_eq!(
+                found.non_finite(),
+                made.volume.non_finite(),
+                "{name} {member}"
+            );
+            let physical =
+                |volume: &Volume, i: usize| volume.rescale().physical(volume.voxels().stored(i));
             for i in 0..found.voxels().len() {
                 let (a, b) = (physical(&found, i), physical(&made.volume, i));
                 assert!((a - b).abs() <= 1e-7 * b.abs(), "{name} {member}: {a} {b}");
@@ -122,7 +140,12 @@ fn non_finite() {
 }
 
 /// What two pictures of the same content may differ by: rounding.
-const SAME: [(Figure, f64); 4] = [(Kind, 0.0), (DepthMean, 1e-3), (NormalMean, 0.01), (ColorMean, 1e-4)];
+const SAME: [(Figure, f64); 4] = [
+    (Kind, 0.0),
+    (DepthMean, 1e-3),
+    (NormalMean, 0.01),
+    (ColorMean, 1e-4),
+];
 
 /// All 48 give the picture of the first; with a geometry that does not tell how they are stored,
 /// none but the first does.
@@ -142,12 +165,18 @@ fn orientations() {
     let expected = frame(&first);
     let differs = |volume: &Volume| {
         let frame = frame(volume);
-        let above = |&&(figure, limit): &&(Figure, f64)| figure.of(&expected, &frame, &first) > limit;
+        let above =
+            |&&(figure, limit): &&(Figure, f64)| figure.of(&expected, &frame, &first) > limit;
         SAME.iter().find(above).map(|(figure, _)| *figure)
     };
     for member in 0..case.count() {
         let stored = case.volume(member).unwrap().volume;
-        assert_eq!(differs(&stored), None, "orientation {:?}", orientation_of(member));
+        assert_eq!(
+            differs(&stored),
+            None,
+            "orientation {:?}",
+            orientation_of(member)
+        );
         if member % 7 == 1 {
             let untold = Geometry::new(
                 DVec3::new(3.0, -4.0, 5.0),
@@ -158,8 +187,17 @@ fn orientations() {
                 panic!("made as u8");
             };
             let voxels = Voxels::from(voxels.to_vec());
-            let untold = Volume::new(stored.dims(), voxels, untold.unwrap(), Rescale::IDENTITY, NonFinite::Refuse);
-            assert!(differs(&untold.unwrap()).is_some(), "orientation {member} untold");
+            let untold = Volume::new(
+                stored.dims(),
+                voxels,
+                untold.unwrap(),
+                Rescale::IDENTITY,
+                NonFinite::Refuse,
+            );
+            assert!(
+                differs(&untold.unwrap()).is_some(),
+                "orientation {member} untold"
+            );
         }
     }
 }
@@ -171,9 +209,17 @@ const INDEX: &str = "voxels[((INDEX)z * volume.ny + y) * volume.nx + x]";
 fn wide_index() {
     let sixteen_bits = kernel(
         "lib/field.clh",
-        &[(INDEX, "voxels[(ushort)(((INDEX)z * volume.ny + y) * volume.nx + x)]")],
+        &[(
+            INDEX,
+            "voxels[(ushort)(((INDEX)z * volume.ny + y) * volume.nx + x)]",
+        )],
     );
-    judge("volumes::wide_index", "wide-index", |_| Vec::new(), &[sixteen_bits]);
+    judge(
+        "volumes::wide_index",
+        "wide-index",
+        |_| Vec::new(),
+        &[sixteen_bits],
+    );
     if is_mutant() {
         return;
     }

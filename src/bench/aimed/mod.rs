@@ -16,9 +16,7 @@ use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{FirstCrossing, RayCaster};
-use crate::scene::{
-    Camera, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
-};
+use crate::scene::{Camera, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone};
 
 use super::{Judge, Met, Verdict};
 
@@ -91,14 +89,31 @@ impl fmt::Display for Report {
         writeln!(
             f,
             "{:<12}{:>11}{:>11}{:>8}{:>8}{:>10}{:>11}{:>10}{:>8}{:>10}",
-            "aim", "rays", "hits", "missed", "extra", "displaced", "borderline", "undecided", "false", "voxels"
+            "aim",
+            "rays",
+            "hits",
+            "missed",
+            "extra",
+            "displaced",
+            "borderline",
+            "undecided",
+            "false",
+            "voxels"
         )?;
         let named = Aim::ALL.into_iter().map(Aim::name).zip(self.tallies);
         for (name, t) in named.chain([("all", self.total())]) {
             writeln!(
                 f,
                 "{name:<12}{:>11}{:>11}{:>8}{:>8}{:>10}{:>11}{:>10}{:>8}{:>10.1e}",
-                t.rays, t.hits, t.missed, t.extra, t.displaced, t.borderline, t.undecided, t.wrongly_proven, t.most_apart
+                t.rays,
+                t.hits,
+                t.missed,
+                t.extra,
+                t.displaced,
+                t.borderline,
+                t.undecided,
+                t.wrongly_proven,
+                t.most_apart
             )?;
         }
         self.wrong.iter().try_for_each(|line| writeln!(f, "{line}"))
@@ -171,8 +186,13 @@ fn judge_one(
         depth_mm: f64::from(found.t),
     };
     // Rays begin tens of voxels away: so much of a voxel is left of their last digit.
-    let verdict = judge.verdict(ray, met, 2.0 * f64::from(f32::EPSILON) * found.t.abs().min(1e6) as f64);
+    let resolution = if found.t.is_finite() {
+        2.0 * f64::from(f32::EPSILON * found.t)
+    } else {
+        0.0
+    };
     let truth = judge.truth(ray);
+    let verdict = judge.verdict(ray, truth, met, resolution);
     let proven = match found.certificate {
         Certificate::Hit => Some(true),
         Certificate::Miss => Some(false),

@@ -273,7 +273,10 @@ impl Cell {
     fn sum(&self, weight: impl Fn(usize, bool) -> f64) -> f64 {
         let corners = self.0.iter().enumerate();
         let weighted = |(corner, value): (usize, &f64)| {
-            value * (0..3).map(|axis| weight(axis, corner >> axis & 1 == 1)).product::<f64>()
+            value
+                * (0..3)
+                    .map(|axis| weight(axis, corner >> axis & 1 == 1))
+                    .product::<f64>()
         };
         corners.map(weighted).sum()
     }

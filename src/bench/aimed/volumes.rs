@@ -40,17 +40,27 @@ pub fn target(seed: u64, n: u32) -> Result<Target> {
         }
         2 => {
             let waves: Vec<(DVec3, f64)> = (0..4)
-                .map(|_| (draws.direction() * draws.between(0.2, 1.2), draws.between(0.0, 6.3)))
+                .map(|_| {
+                    (
+                        draws.direction() * draws.between(0.2, 1.2),
+                        draws.between(0.0, 6.3),
+                    )
+                })
                 .collect();
             let value = |p: DVec3| -> f64 {
-                let sum: f64 = waves.iter().map(|(k, phase)| (k.dot(p) + phase).sin()).sum();
+                let sum: f64 = waves
+                    .iter()
+                    .map(|(k, phase)| (k.dot(p) + phase).sin())
+                    .sum();
                 127.5 + 30.0 * sum
             };
             let voxels: Vec<u8> = positions(dims).map(|p| value(p).round() as u8).collect();
             (voxels.into(), f64::from(draws.below(120)) + 68.0)
         }
         3 => {
-            let voxels: Vec<f32> = (0..count).map(|_| draws.between(-1.0, 1.0) as f32).collect();
+            let voxels: Vec<f32> = (0..count)
+                .map(|_| draws.between(-1.0, 1.0) as f32)
+                .collect();
             (voxels.into(), f64::from(draws.between(-0.8, 0.8) as f32))
         }
         _ => {

@@ -25,7 +25,7 @@ kernel void aimed_rays(const global VOXEL *voxels, const global uchar *node_clas
     Crossing found;
     found.t = INFINITY;
     found.kind = KIND_NOTHING;
-    found.certificate = CERTIFICATE_MISS;
+    found.certificate = only_touches(interval) ? CERTIFICATE_UNDECIDED : CERTIFICATE_MISS;
     uint cells_read = 0u;
     uint nodes_tested = 0u;
     if (interval.enter <= interval.exit)

@@ -108,8 +108,13 @@ impl<'a> Judge<'a> {
         let voxel = self.voxel_mm / ray.dir_world.length();
         let likewise = |other: Met| apart(other, met, voxel).is_some_and(|apart| apart <= most);
         let first_mm = truth.depth_mm.min(met.depth_mm);
-        let iso_off = Self::NEAR_VOXELS * self.steepest_near(ray, first_mm);
-        let iso_off = iso_off.max(Self::NEAR_VALUE * self.volume.range().width());
+        let iso_off = self.iso_off(ray, first_mm);
+        if met.kind == Kind::Surface
+            && met.depth_mm <= truth.depth_mm
+            && self.is_near(ray, met.depth_mm)
+        {
+            return true;
+        }
         let here = Off {
             by: DVec3::ZERO,
             iso: 0.0,
@@ -129,7 +134,7 @@ impl<'a> Judge<'a> {
                 if likewise(near) {
                     return true;
                 }
-                passes |= near.depth_mm > truth.depth_mm + most * voxel;
+                passes |= near.depth_mm > truth.depth_mm + most * voxel || near.kind != truth.kind;
                 let nearest = if near.depth_mm < met.depth_mm {
                     &mut before
                 } else {
@@ -157,6 +162,11 @@ impl<'a> Judge<'a> {
                     high = middle;
                 }
             }
+        }
+        // A cap where the surface is, too.
+        let at_once = (truth.depth_mm - met.depth_mm).abs() <= most * voxel;
+        if at_once && passes {
+            return true;
         }
         // The truth only touches where it hits: what lies behind decides.
         if touches == 0 || !passes || truth.depth_mm >= met.depth_mm {
@@ -212,37 +222,71 @@ impl<'a> Judge<'a> {
         all.map(move |way| way * near_mm)
     }
 
-    /// The largest difference of two voxels side by side about a point of the ray: how much the
-    /// field changes there a voxel at most. Physical.
-    fn steepest_near(&self, ray: Ray, depth_mm: f64) -> f64 {
-        if !depth_mm.is_finite() {
-            return 0.0;
+    /// Whether the field at a place of the ray is so near to the iso value that the surface is
+    /// within [`Judge::NEAR_VOXELS`].
+    fn is_near(&self, ray: Ray, depth_mm: f64) -> bool {
+        let Picture::Surface { iso, .. } = self.scene.picture else {
+            return false;
+        };
+        let p = self.index_point(ray, depth_mm);
+        let low = p.floor();
+        let f = p - low;
+        let mut field = 0.0;
+        for corner in 0..8 {
+            let at = [0, 1, 2].map(|axis| corner >> axis & 1);
+            let weights = [0, 1, 2].map(|axis| {
+                if at[axis] == 1 {
+                    f[axis]
+                } else {
+                    1.0 - f[axis]
+                }
+            });
+            field += self.value_at(low, at) * weights.iter().product::<f64>();
         }
-        let p_world = ray.origin_world + ray.dir_world * depth_mm;
-        let p = self
-            .volume
-            .geometry()
-            .index_from_world()
-            .transform_point3(p_world);
-        let n = self.volume.dims().usize();
-        let side = |axis: usize, step: i64| {
-            let at = p[axis].floor() as i64 + step;
-            at.clamp(0, n[axis] as i64 - 1) as usize
-        };
-        let value = |at: [i64; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|axis| side(axis, at[axis]));
-            self.volume.voxels().stored(x + n[0] * (y + n[1] * z))
-        };
+        (field - iso).abs() <= self.iso_off(ray, depth_mm)
+    }
+
+    /// How much the field changes in [`Judge::NEAR_VOXELS`] about a place of the ray, or
+    /// [`Judge::NEAR_VALUE`]. Physical.
+    fn iso_off(&self, ray: Ray, depth_mm: f64) -> f64 {
+        let least = Self::NEAR_VALUE * self.volume.range().width();
+        if !depth_mm.is_finite() {
+            return least;
+        }
+        let low = self.index_point(ray, depth_mm).floor();
+        // The largest difference of two voxels side by side.
         let mut steepest: f64 = 0.0;
-        for corner in 0..64_i64 {
+        for corner in 0..64 {
             let at = [corner % 4 - 1, corner / 4 % 4 - 1, corner / 16 - 1];
             for axis in 0..3 {
                 let mut next = at;
                 next[axis] += 1;
-                steepest = steepest.max((value(at) - value(next)).abs());
+                let difference = self.value_at(low, at) - self.value_at(low, next);
+                steepest = steepest.max(difference.abs());
             }
         }
-        steepest * self.volume.rescale().slope
+        least.max(Self::NEAR_VOXELS * steepest)
+    }
+
+    fn index_point(&self, ray: Ray, depth_mm: f64) -> DVec3 {
+        let p_world = ray.origin_world + ray.dir_world * depth_mm;
+        self.volume
+            .geometry()
+            .index_from_world()
+            .transform_point3(p_world)
+    }
+
+    /// The physical value of the voxel `step` from `low`, or of the nearest one that there is.
+    fn value_at(&self, low: DVec3, step: [i64; 3]) -> f64 {
+        let n = self.volume.dims().usize();
+        let side = |axis: usize| {
+            let at = low[axis] as i64 + step[axis];
+            at.clamp(0, n[axis] as i64 - 1) as usize
+        };
+        let index = side(0) + n[0] * (side(1) + n[1] * side(2));
+        self.volume
+            .rescale()
+            .physical(self.volume.voxels().stored(index))
     }
 }
 

@@ -2,6 +2,9 @@
 
 mod abi;
 mod classify;
+mod clip;
+mod directions;
+mod gradient;
 mod passes;
 mod picture;
 mod pipeline;
@@ -12,6 +15,8 @@ mod reach;
 mod twins;
 mod variant;
 
+pub use directions::{AngleError, Directions};
+pub use gradient::GradientFigures;
 pub use pipeline::{Options, Renderer, Rendering};
 pub use ray_caster::{FirstCrossing, RayCaster};
 pub use twins::struct_layouts;

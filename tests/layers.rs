@@ -16,10 +16,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("gpu", &[]),
     ("octree", &["volume"]),
+    ("hardcases", &["volume", "scene"]),
     ("reference", &["volume", "scene", "frame"]),
     ("render", &["volume", "scene", "frame", "gpu", "octree"]),
     (
-        "cli",
+        "bench",
         &[
             "volume",
             "scene",
@@ -28,6 +29,20 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "octree",
             "reference",
             "render",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "volume",
+            "scene",
+            "frame",
+            "gpu",
+            "octree",
+            "hardcases",
+            "reference",
+            "render",
+            "bench",
         ],
     ),
 ];

@@ -37,7 +37,7 @@ kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_c
     Crossing found;
     found.t = INFINITY;
     found.kind = KIND_NOTHING;
-    found.certificate = CERTIFICATE_MISS;
+    found.certificate = only_touches(interval) ? CERTIFICATE_UNDECIDED : CERTIFICATE_MISS;
     float hit_value = 0.0f;
     uint cells_read = 0u;
     uint nodes_tested = 0u;

@@ -2,6 +2,7 @@
 
 mod devices;
 mod engine;
+mod hardcase;
 mod info;
 mod load;
 mod outputs;

@@ -8,7 +8,8 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Traverse, Window,
+    Emission, Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Traverse,
+    Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
@@ -64,10 +65,12 @@ fn pictures(range_max: f64) -> Vec<Picture> {
         1.0,
     )
     .unwrap();
-    let emission = |phong| Picture::Emission {
-        transfer: transfer.clone(),
-        phong,
-        termination: 0.99,
+    let emission = |phong| {
+        Picture::Emission(Emission {
+            phong,
+            termination: 0.99,
+            ..Emission::of(transfer.clone())
+        })
     };
     let projection = |of| Picture::Projection { of, window };
     vec![

@@ -11,7 +11,7 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Window,
+    Emission, Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
@@ -36,11 +36,11 @@ fn pictures() -> Vec<Picture> {
             color: Rgb([1.0; 3]),
             phong,
         });
-        pictures.push(Picture::Emission {
-            transfer: transfer.clone(),
+        pictures.push(Picture::Emission(Emission {
             phong,
             termination: 0.99,
-        });
+            ..Emission::of(transfer.clone())
+        }));
     }
     for of in [
         Projection::Maximum,

@@ -4,7 +4,7 @@ mod common;
 
 use angioray::frame::{Frame, Wanted};
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Knot, Picture, Rgb, TransferFunction};
+use angioray::scene::{Emission, Knot, Picture, Rgb, TransferFunction};
 use common::volume_of;
 
 /// Thin dark mist before bright fog: what a ray loses at its end is the brightest there is.
@@ -19,11 +19,10 @@ fn mist_before_fog(termination: f64) -> Picture {
         knot(1.0, 0.0, 0.08),
         knot(1.1, 1.0, 0.5),
     ];
-    Picture::Emission {
-        transfer: TransferFunction::new(knots, 1.0).unwrap(),
-        phong: None,
+    Picture::Emission(Emission {
         termination,
-    }
+        ..Emission::of(TransferFunction::new(knots, 1.0).unwrap())
+    })
 }
 
 fn most_lost(whole: &Frame, ended: &Frame) -> f64 {

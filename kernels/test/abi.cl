@@ -71,6 +71,7 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, least_transmission);
         layout[n++] = OFFSET(EmissionCast, knots);
         layout[n++] = OFFSET(EmissionCast, traverse);
+        layout[n++] = OFFSET(EmissionCast, bound);
         layout[n++] = OFFSET(EmissionCast, pad);
     }
     {

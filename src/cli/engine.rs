@@ -101,6 +101,8 @@ pub struct Rendered {
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
     pub device_bytes: u64,
+    /// From host to device.
+    pub uploaded_bytes: u64,
 }
 
 impl Engine {
@@ -152,6 +154,7 @@ impl Engine {
                     },
                     times_ms: Times {
                         octree: octree_ms,
+                        classify: rendering.classify_ms,
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,
                         render: rendering.render_ms,
@@ -166,6 +169,7 @@ impl Engine {
                         })
                         .collect(),
                     device_bytes: rendering.device_bytes,
+                    uploaded_bytes: rendering.uploaded_bytes,
                 })
             }
         }
@@ -197,5 +201,6 @@ fn by_reference(
             ms: render_ms,
         }],
         device_bytes: 0,
+        uploaded_bytes: 0,
     })
 }

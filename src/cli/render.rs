@@ -104,7 +104,7 @@ impl RenderArguments {
             times_ms,
             passes: rendered.passes,
             counts: Counts::of(&rendered.frame, &resolved.scene.picture),
-            memory: Memory::now(rendered.device_bytes),
+            memory: Memory::now(rendered.device_bytes, rendered.uploaded_bytes),
         };
         stats.write(path)
     }

@@ -70,6 +70,8 @@ pub struct Times {
     pub read: f64,
     pub smooth: f64,
     pub octree: f64,
+    /// Telling from the octree what can be left out.
+    pub classify: f64,
     /// Kernel compilation.
     pub build: f64,
     pub upload: f64,
@@ -100,7 +102,7 @@ impl Counts {
             counts.map(|&n| u64::from(n)).sum()
         };
         let hits = match picture {
-            Picture::Emission { .. } => frame.color.iter().filter(|c| c[3] > 0.0).count(),
+            Picture::Emission(_) => frame.color.iter().filter(|c| c[3] > 0.0).count(),
             _ => frame
                 .kind
                 .iter()
@@ -122,13 +124,16 @@ pub struct Memory {
     /// The most that the process held; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
+    /// From host to device.
+    pub uploaded_bytes: u64,
 }
 
 impl Memory {
-    pub fn now(device_bytes: u64) -> Self {
+    pub fn now(device_bytes: u64, uploaded_bytes: u64) -> Self {
         Self {
             host_peak_bytes: host_peak_bytes(),
             device_bytes,
+            uploaded_bytes,
         }
     }
 }

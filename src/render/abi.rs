@@ -99,7 +99,9 @@ twin! {
         least_transmission: f32,
         knots: u32,
         traverse: u32,
-        pad: [f32; 2],
+        /// Of the adaptive quadrature's error.
+        bound: f32,
+        pad: u32,
     }
 }
 

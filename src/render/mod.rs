@@ -2,10 +2,14 @@
 
 mod abi;
 mod classify;
+mod emission;
+mod homogeneity;
+mod medium;
 mod passes;
 mod picture;
 mod pipeline;
 mod planes;
+mod ranges;
 mod rays;
 mod twins;
 mod variant;

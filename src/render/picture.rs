@@ -2,16 +2,14 @@
 
 use crate::error::Result;
 use crate::frame::Wanted;
-use crate::gpu::Buffer;
 use crate::octree::Octree;
-use crate::scene::{Phong, Projection, Refine, Rgb, Scene, TransferFunction, Window};
+use crate::scene::{Phong, Projection, Refine, Rgb, Scene, Window};
 use crate::volume::Volume;
 
-use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
+use super::abi::{ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
 use super::passes::{
-    DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, shade_surface,
-    surface_normal, window_value,
+    DeviceVolume, Run, cast_maximum, cast_surface, shade_surface, surface_normal, window_value,
 };
 use super::planes::Planes;
 use super::twins::{self, stored};
@@ -28,11 +26,11 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    fn step_mm(&self) -> f32 {
+    pub fn step_mm(&self) -> f32 {
         twins::step_mm(&self.scene.sampling, self.volume) as f32
     }
 
-    fn traverse(&self) -> u32 {
+    pub fn traverse(&self) -> u32 {
         traverse_number(&self.scene.sampling)
     }
 }
@@ -49,11 +47,7 @@ pub fn surface(
 ) -> Result<Planes> {
     let wanted = view.wanted;
     let iso = stored(view.volume.rescale(), iso);
-    let node_class = Buffer::upload(
-        run.device,
-        "octree's classes",
-        &classify::by_iso(view.octree, iso),
-    )?;
+    let node_class = run.node_classes(|| classify::by_iso(view.octree, iso))?;
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -165,65 +159,5 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         kind: Some(kind),
         counters,
         other_bytes: 0,
-    })
-}
-
-/// `dvr`: one cast.
-pub fn emission(
-    run: &mut Run,
-    view: &View,
-    transfer: &TransferFunction,
-    phong: Option<Phong>,
-    termination: f64,
-) -> Result<Planes> {
-    let rescale = view.volume.rescale();
-    let knots = transfer.knots_within(view.volume.range());
-    let values: Vec<f32> = knots.iter().map(|k| stored(rescale, k.value)).collect();
-    let colors: Vec<[f32; 4]> = knots
-        .iter()
-        .map(|k| {
-            let [r, g, b] = k.color.0.map(|c| c as f32);
-            [r, g, b, k.opacity as f32]
-        })
-        .collect();
-    let classes = classify::by_opacity(view.octree, &values, |k| colors[k][3]);
-    let node_class = Buffer::upload(run.device, "octree's classes", &classes)?;
-    let on_device = DeviceTransfer {
-        values: Buffer::upload(run.device, "transfer function", &values)?,
-        colors: Buffer::upload(run.device, "transfer function", &colors)?,
-    };
-    let cast = EmissionCast {
-        step_mm: view.step_mm(),
-        unit_length_mm: transfer.unit_length_mm() as f32,
-        most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
-        least_transmission: (1.0 - termination) as f32,
-        knots: knots.len() as u32,
-        traverse: view.traverse(),
-        pad: [0.0; 2],
-    };
-    let shading = twins::shading(Rgb::BLACK, phong, view.scene.light);
-    let mut color = run.plane("colour plane")?;
-    let mut counters = run.counters(view.wanted.counters)?;
-    cast_emission(
-        run,
-        phong.is_some(),
-        view.uploaded,
-        &node_class,
-        &on_device,
-        &view.rays,
-        &cast,
-        &shading,
-        &mut color,
-        counters.as_mut(),
-    )?;
-    Ok(Planes {
-        color,
-        display: None,
-        depth: None,
-        normal: None,
-        value: None,
-        kind: None,
-        counters,
-        other_bytes: node_class.bytes() + on_device.values.bytes() + on_device.colors.bytes(),
     })
 }

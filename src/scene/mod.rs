@@ -5,9 +5,11 @@
 
 mod camera;
 mod color;
+mod homogeneity;
 mod light;
 pub(crate) mod options;
 mod picture;
+mod quadrature;
 mod sampling;
 mod toml_error;
 mod transfer;
@@ -16,9 +18,11 @@ mod view;
 
 pub use camera::{Camera, Lens, Ray};
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use homogeneity::{Homogeneity, HomogeneityRule};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
-pub use picture::{Picture, Projection, Window};
+pub use picture::{Emission, Picture, Projection, Window};
+pub use quadrature::{Quadrature, QuadratureMethod};
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};

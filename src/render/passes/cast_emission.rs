@@ -3,6 +3,8 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::variant::quadrature_constant;
+use crate::scene::QuadratureMethod;
 
 use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
 
@@ -11,15 +13,27 @@ pub struct DeviceTransfer {
     pub values: Buffer<f32>,
     /// Linear light, opacity of the unit length in the last channel.
     pub colors: Buffer<[f32; 4]>,
+    /// As `mean_medium` of `preintegrated.clh` has them; empty where no rule wants them.
+    pub sums: Buffer<[f32; 4]>,
 }
 
-/// Emission and absorption along each ray: `color`, linear light, premultiplied.
+impl DeviceTransfer {
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.values.bytes() + self.colors.bytes() + self.sums.bytes()
+    }
+}
+
+/// Emission and absorption along each ray by `method`: `color`, linear light, premultiplied.
+/// `node_average`, of the leaves, where some are homogeneous.
 #[allow(clippy::too_many_arguments)]
 pub fn cast_emission(
     run: &mut Run,
+    method: QuadratureMethod,
     shaded: bool,
     volume: &DeviceVolume,
     node_class: &Buffer<u8>,
+    node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
     cast: &EmissionCast,
@@ -29,8 +43,11 @@ pub fn cast_emission(
 ) -> Result<()> {
     let with_counters = counters.is_some();
     let variant = run.variant;
+    let integrates = method == QuadratureMethod::Preintegrated;
     let defines = variant
         .defines()
+        .with("QUADRATURE", format!("{}u", quadrature_constant(method)))
+        .with("HOMOGENEOUS", switch(node_average.is_some()))
         .with("SHADED", switch(shaded))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_emission", defines, || {
@@ -40,22 +57,33 @@ pub fn cast_emission(
             levels(),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
+        ];
+        signature.extend(integrates.then(|| input::<[f32; 4]>("knot_sums")));
+        signature.extend(node_average.map(|_| input::<f32>("node_average")));
+        signature.extend([
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
             value::<EmissionCast>("cast"),
             value::<Shading>("shading"),
             output::<[f32; 4]>("color"),
-        ];
+        ]);
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let launch = pass
+    let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
         .input(&transfer.values)
-        .input(&transfer.colors)
+        .input(&transfer.colors);
+    if integrates {
+        launch = launch.input(&transfer.sums);
+    }
+    if let Some(node_average) = node_average {
+        launch = launch.input(node_average);
+    }
+    let launch = launch
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -70,12 +70,22 @@ pub struct Run<'a> {
     /// Pixels along x and y that one work-group takes.
     pub work_group: [usize; 2],
     pub variant: Variant,
+    /// Time spent classifying the octree's nodes.
+    pub classify_ms: f64,
 }
 
 impl Run<'_> {
     /// Room for one plane of the frame; `what` names it in errors.
     pub fn plane<T: Element>(&self, what: &str) -> Result<Buffer<T>> {
         Buffer::new(self.device, what, self.size.pixels())
+    }
+
+    /// The nodes' classes on the device.
+    pub fn node_classes(&mut self, classify: impl FnOnce() -> Vec<u8>) -> Result<Buffer<u8>> {
+        let start = Instant::now();
+        let classes = classify();
+        self.classify_ms += start.elapsed().as_secs_f64() * 1e3;
+        Buffer::upload(self.device, "octree's classes", &classes)
     }
 
     pub fn counters(&self, wanted: bool) -> Result<Option<Counters>> {

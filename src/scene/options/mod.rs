@@ -26,8 +26,8 @@ pub use camera::CameraOptions;
 pub use file::{SceneFile, flag_names};
 pub(crate) use numbers::concise;
 pub use numbers::{
-    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
-    StepVoxels, Termination, Zoom,
+    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,
+    Shininess, SigmaMm, StepVoxels, Termination, Zoom,
 };
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;

@@ -31,36 +31,9 @@ typedef struct {
     float3 toward_eye;
 } Sight;
 
-static inline Medium medium_at(Sight sight, float t)
-{
-    float3 p = lattice_point(sight.volume, sight.lattice, t);
-    Medium medium = medium_of(sight.knot_values, sight.knot_colors, sight.cast, field_at(sight.voxels, sight.volume, p));
-#if SHADED
-    medium = lit_medium(sight.voxels, sight.volume, sight.shading, sight.toward_eye, p, medium);
-#endif
-    return medium;
-}
-
 // The panel between two samples of the lattice. `near`, what is known of the first, is found unless
 // `known`; what is known of the second takes its place.
-#if QUADRATURE == QUADRATURE_RIEMANN
-typedef uint Node; // samples are not shared
-
-static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near, bool known, uint *samples)
-{
-    *samples += 1u;
-    return panel_riemann(medium_at(sight, t_near), t_far - t_near);
-}
-#elif QUADRATURE == QUADRATURE_MIDPOINT
-typedef uint Node; // samples are not shared
-
-static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near, bool known, uint *samples)
-{
-    float length_mm = t_far - t_near;
-    *samples += 1u;
-    return panel_midpoint(medium_at(sight, t_near + 0.5f * length_mm), length_mm);
-}
-#elif QUADRATURE == QUADRATURE_PREINTEGRATED
+#if QUADRATURE == QUADRATURE_PREINTEGRATED
 typedef float Node; // Phi
 
 static inline float phi_at(Sight sight, float t)
@@ -83,29 +56,61 @@ static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near,
     return panel_midpoint(mean, length_mm);
 }
 #else
-typedef Medium Node;
+static inline Medium medium_at(Sight sight, float t)
+{
+    float3 p = lattice_point(sight.volume, sight.lattice, t);
+    Medium medium = medium_of(sight.knot_values, sight.knot_colors, sight.cast, field_at(sight.voxels, sight.volume, p));
+#if SHADED
+    medium = lit_medium(sight.voxels, sight.volume, sight.shading, sight.toward_eye, p, medium);
+#endif
+    return medium;
+}
+
+#if QUADRATURE == QUADRATURE_RIEMANN
+typedef uint Node; // samples are not shared
+
+static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near, bool known, uint *samples)
+{
+    *samples += 1u;
+    return panel_riemann(medium_at(sight, t_near), t_far - t_near);
+}
+#elif QUADRATURE == QUADRATURE_MIDPOINT
+typedef uint Node; // samples are not shared
 
 static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near, bool known, uint *samples)
 {
     float length_mm = t_far - t_near;
-    Node first = *near;
-    if (!known)
-        first = medium_at(sight, t_near);
-    Medium middle = medium_at(sight, t_near + 0.5f * length_mm);
-    Node last = medium_at(sight, t_far);
-    *samples += known ? 2u : 3u;
-    *near = last;
-#if QUADRATURE == QUADRATURE_ROMBERG
-    Medium second = medium_at(sight, t_near + 0.25f * length_mm);
-    Medium fourth = medium_at(sight, t_near + 0.75f * length_mm);
-    *samples += 2u;
-    return panel_romberg(first, second, middle, fourth, last, length_mm);
-#elif QUADRATURE == QUADRATURE_RK4
-    return panel_rk4(first, middle, last, length_mm);
+    *samples += 1u;
+    return panel_midpoint(medium_at(sight, t_near + 0.5f * length_mm), length_mm);
+}
 #else
-    return panel_simpson(first, middle, last, length_mm);
+typedef Medium Node;
+
+#if QUADRATURE == QUADRATURE_ROMBERG
+#define LAST 4u // of the nodes, which lie evenly
+#else
+#define LAST 2u
+#endif
+
+static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near, bool known, uint *samples)
+{
+    float length_mm = t_far - t_near;
+    Medium nodes[LAST + 1u];
+    nodes[0] = *near;
+    for (uint n = known ? 1u : 0u; n <= LAST; n++) {
+        nodes[n] = medium_at(sight, n == LAST ? t_far : t_near + (float)n * (length_mm / (float)LAST));
+        *samples += 1u;
+    }
+    *near = nodes[LAST];
+#if QUADRATURE == QUADRATURE_ROMBERG
+    return panel_romberg(nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], length_mm);
+#elif QUADRATURE == QUADRATURE_RK4
+    return panel_rk4(nodes[0], nodes[1], nodes[2], length_mm);
+#else
+    return panel_simpson(nodes[0], nodes[1], nodes[2], length_mm);
 #endif
 }
+#endif
 #endif
 
 kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,

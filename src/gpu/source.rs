@@ -30,6 +30,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/refine.clh",
     "lib/shade.clh",
     "lib/transfer.clh",
+    "pass/adaptive_emission.cl",
     "pass/cast_emission.cl",
     "pass/cast_maximum.cl",
     "pass/cast_surface.cl",

@@ -131,11 +131,15 @@ pub enum ProjectionLoop {
     Local = 2,
 }
 
+/// How often the adaptive quadrature halves a monotone piece of a cell.
+const ADAPTIVE_HALVINGS: u32 = 10;
+
 /// The most samples of a ray: single precision counts no further.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("TRANSFER_MOST_KNOTS", medium::MOST_KNOTS),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),

@@ -15,6 +15,7 @@ pub struct DeviceTransfer {
     pub colors: Buffer<[f32; 4]>,
     /// As `mean_medium` of `preintegrated.clh` has them; empty where no rule wants them.
     pub sums: Buffer<[f32; 4]>,
+    pub knots: u32,
 }
 
 impl DeviceTransfer {

@@ -1,5 +1,6 @@
 //! One typed function per kernel of `kernels/pass`: `&` is read, `&mut` is written.
 
+mod adaptive_emission;
 mod cast_emission;
 mod cast_maximum;
 mod cast_surface;
@@ -21,6 +22,7 @@ use crate::gpu::{
 use super::abi::VolumeGrid;
 use super::variant::{Variant, voxel_cl_name};
 
+pub use adaptive_emission::adaptive_emission;
 pub use cast_emission::{DeviceTransfer, cast_emission};
 pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;

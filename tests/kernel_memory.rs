@@ -116,7 +116,7 @@ impl Under {
     }
 }
 
-const MODES: [&str; 8] = [
+const MODES: [&str; 13] = [
     "--mode iso --iso 40% --shading phong",
     "--mode iso --iso 40% --shading none --refine newton:4 --traverse kd-restart",
     "--mode mip",
@@ -125,6 +125,11 @@ const MODES: [&str; 8] = [
     "--mode lmip --lmip-threshold 40%",
     "--mode dvr --shading blinn-phong",
     "--mode dvr --shading none --skip off",
+    "--mode dvr --quad riemann --traverse uniform",
+    "--mode dvr --quad romberg --homogeneity 0.5",
+    "--mode dvr --quad rk4 --homogeneity 0.5 --homogeneity-rule range --skip off",
+    "--mode dvr --quad preintegrated --shading phong",
+    "--mode dvr --quad adaptive:0.01 --shading phong",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.

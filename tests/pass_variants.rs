@@ -11,11 +11,13 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Window,
+    Emission, Filter, Homogeneity, HomogeneityRule, Knot, Phong, Picture, Projection, Quadrature,
+    QuadratureMethod, Refine, Rgb, TransferFunction, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
 
+/// With the default quadrature.
 fn pictures() -> Vec<Picture> {
     let window = Window::new(0.0, 4.0).unwrap();
     let transfer = TransferFunction::new(
@@ -52,6 +54,38 @@ fn pictures() -> Vec<Picture> {
     pictures
 }
 
+/// Emission under every quadrature, shaded and not, and with homogeneous leaves.
+fn emissions() -> Vec<Picture> {
+    let knot = Knot {
+        value: 1.0,
+        color: Rgb([1.0; 3]),
+        opacity: 0.5,
+    };
+    let plain = Emission::of(TransferFunction::new(vec![knot], 1.0).unwrap());
+    let homogeneity = Homogeneity {
+        rule: HomogeneityRule::Optical,
+        limit: 0.1,
+    };
+    let mut emissions = Vec::new();
+    for method in QuadratureMethod::ALL {
+        let quadrature = Quadrature::of(method);
+        let mut push = |phong, homogeneity| {
+            emissions.push(Picture::Emission(Emission {
+                phong,
+                quadrature,
+                homogeneity,
+                ..plain.clone()
+            }));
+        };
+        push(None, None);
+        push(Some(Phong::default()), None);
+        if quadrature.is_stepped() {
+            push(None, Some(homogeneity));
+        }
+    }
+    emissions
+}
+
 fn layers_alone() -> Wanted {
     Wanted {
         counters: false,
@@ -66,9 +100,10 @@ fn counters_alone() -> Wanted {
     }
 }
 
-/// Builds and runs every pass of every picture for one voxel type, with these filters and planes;
+/// Builds and runs every pass of these pictures for one voxel type, with these filters and planes;
 /// counts the launches.
 fn launches<T>(
+    pictures: &[Picture],
     leaf: Leaf,
     filters: &[Filter],
     outputs: &[Wanted],
@@ -84,7 +119,7 @@ where
     let octree = Octree::build(&volume, leaf, &Silent).unwrap();
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let mut launches = 0;
-    for picture in pictures() {
+    for picture in pictures {
         for &filter in filters {
             for &wanted in outputs {
                 let mut scene = common::scene(&volume, 8, picture.clone());
@@ -119,7 +154,7 @@ where
     Voxels: From<Vec<T>>,
 {
     let outputs = [Wanted::default(), Wanted::ALL];
-    launches(Leaf::default(), &FILTERS, &outputs, voxel)
+    launches(&pictures(), Leaf::default(), &FILTERS, &outputs, voxel)
 }
 
 #[test]
@@ -131,14 +166,29 @@ fn u8_variants_build() {
 fn u8_variants_build_with_either_output_alone() {
     let outputs = [layers_alone(), counters_alone()];
     let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(Leaf::default(), &[Filter::Linear], &outputs, sum) > 0);
+    assert!(
+        launches(
+            &pictures(),
+            Leaf::default(),
+            &[Filter::Linear],
+            &outputs,
+            sum
+        ) > 0
+    );
 }
 
 #[test]
 fn u8_variants_build_with_a_leaf_of_five_cells() {
     let leaf = Leaf::new(5).unwrap();
     let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
+    assert!(launches(&pictures(), leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
+}
+
+#[test]
+fn u8_variants_of_every_quadrature_build() {
+    let outputs = [Wanted::default(), Wanted::ALL];
+    let sum = |x, y, z| (x + y + z) as u8;
+    assert!(launches(&emissions(), Leaf::default(), &FILTERS, &outputs, sum) > 0);
 }
 
 #[test]

@@ -6,8 +6,6 @@
 
 mod common;
 
-use std::path::PathBuf;
-
 use angioray::extent::Dims;
 use angioray::frame::error::{DepthError, color_error, depth_error, value_error};
 use angioray::frame::{Frame, Wanted};
@@ -15,7 +13,7 @@ use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{Emission, Picture, Projection, Refine, Rgb, Scene, TransferFile, Window};
-use angioray::volume::{PhantomKind, PhantomSpec, ReadOptions, Volume, phantom, read};
+use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 
 const SIZE_PX: u32 = 256;
 
@@ -166,22 +164,9 @@ fn judge_phantom(kind: PhantomKind) {
 }
 
 fn judge_real(name: &str, file: &str, iso: f64) {
-    let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
-        eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");
-        return;
-    };
-    let path = folder.join(file);
-    if !path.exists() {
-        eprintln!("skipped: there is no {}", path.display());
-        return;
+    if let Some(volume) = common::real_volume(file) {
+        judge(name, &volume, iso);
     }
-    let mut options = ReadOptions::default();
-    if file.ends_with(".raw.gz") {
-        options.raw.size = Some("256x256x256".parse().unwrap());
-        options.raw.element = Some("u8".parse().unwrap());
-    }
-    let volume = read(&path, &options, &Silent).unwrap();
-    judge(name, &volume, iso);
 }
 
 #[test]
@@ -226,25 +211,25 @@ fn vessels() {
 
 #[test]
 fn real_aneurism() {
-    judge_real("aneurism", "aneurism_toxi/aneurism.raw.gz", 50.0);
+    judge_real("aneurism", common::ANEURISM, 50.0);
 }
 
 #[test]
 fn real_ct_avm() {
-    judge_real("CT_AVM", "niivue_CT_AVM/CT_AVM.nii.gz", 150.0);
+    judge_real("CT_AVM", common::CT_AVM, 150.0);
 }
 
 #[test]
 fn real_chris_mra() {
-    judge_real("chris_MRA", "niivue_chris_MRA/chris_MRA.nii.gz", 80.0);
+    judge_real("chris_MRA", common::CHRIS_MRA, 80.0);
 }
 
 #[test]
 fn real_aorta() {
-    judge_real("aorta", "vmtk_aorta/aorta.mha", 900.0);
+    judge_real("aorta", common::AORTA, 900.0);
 }
 
 #[test]
 fn real_stent() {
-    judge_real("stent", "stent_npz/stent.npz", 350.0);
+    judge_real("stent", common::STENT, 350.0);
 }

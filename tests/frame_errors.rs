@@ -18,6 +18,7 @@ fn frame(width: u32, height: u32) -> Frame {
         steps: None,
         nodes: None,
         kind: None,
+        certificate: None,
     }
 }
 

@@ -115,7 +115,10 @@ fn noise_under_a_step() {
             0.5 + 0.008 * hash(x, y, z) as f32
         }
     });
-    let steep = transfer(&[(0.505, 0.0), (0.5051, 0.3), (0.55, 0.3), (0.551, 0.0)], 4.0);
+    let steep = transfer(
+        &[(0.505, 0.0), (0.5051, 0.3), (0.55, 0.3), (0.551, 0.0)],
+        4.0,
+    );
     judge("noise", &volume, steep);
 }
 

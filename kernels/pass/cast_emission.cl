@@ -172,14 +172,9 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                     cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
                     last_cell = span_cell;
                     walk_on(&walk, last_cell, cell);
-                    for (;;) {
-                        class = node_class[node_index(levels, cell, walk.level)];
-                        node_count++;
-                        if (class != CLASS_VISIT || walk.level == 0u)
-                            break;
-                        walk.level--;
-                    }
-                    end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
+                    uint byte = walk_down(&walk, node_class, levels, cell, &node_count);
+                    class = class_of(byte);
+                    end = span_end(volume, lattice, k, cell, node_box(cell, walk.level, reach_of(byte)), &span_cell);
                 }
             }
             // A panel is left out where it lies in transparent nodes wholly.

@@ -1,13 +1,14 @@
 // One value per ray: its maximum or minimum, its mean, or its first local maximum.
 //
 // PROJECTION_EXTREMUM: the largest of sign * Phi over the samples, and where it is first reached;
-// a node is skipped when its range cannot beat the running extremum (Mroz et al. 2000). With `probe`
-// the peaks between samples count too.
+// a node is skipped when its range cannot beat the running extremum, which starts at `floor` (Mroz
+// et al. 2000). With `probe` the peaks between samples count too.
 // PROJECTION_MEAN: the composite trapezoid rule, every sample needed.
 // PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
 // either end counts when the value falls away from it.
 //
-// Reads the voxels and, per octree node, its range. Writes per pixel kind (surface where the ray
+// Reads the voxels and, per octree node, its range and its CLASS_* (CLASS_BELOW: nowhere above
+// `floor`). Writes per pixel kind (surface where the ray
 // meets the volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the
 // eye; +inf for the mean); with COUNTERS the samples taken and the nodes tested.
 #include "lib/octree.clh"
@@ -17,7 +18,7 @@
 #error "PROJECTION, which value is wanted, is given by the host"
 #endif
 
-kernel void cast_maximum(const global VOXEL *voxels, const global float2 *node_range, const global uint4 *levels,
+kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range, const global uint4 *levels,
                             VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                             global uint *kind, global float *value
 #if LAYERS
@@ -62,7 +63,8 @@ kernel void cast_maximum(const global VOXEL *voxels, const global float2 *node_r
         }
         found = sum;
 #else
-        float most = -INFINITY; // of sign * Phi
+        float most = cast.floor; // of sign * Phi
+        found_mm = 0.0f;
         bool done = false;
         Walk walk = walk_start(volume, cast.traverse);
         uint3 cell = cell_at(volume, lattice.start);
@@ -83,21 +85,11 @@ kernel void cast_maximum(const global VOXEL *voxels, const global float2 *node_r
                     cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
                     last_cell = span_cell;
                     walk_on(&walk, last_cell, cell);
-                    for (;;) {
-                        float2 range = node_range[node_index(levels, cell, walk.level)];
-                        float bound = cast.sign > 0.0f ? range.y : -range.x;
-                        node_count++;
-#if PROJECTION == PROJECTION_LOCAL
-                        // A climb that has reached the threshold ends where all that follows is lower.
-                        skip = most >= cast.threshold ? bound < most : bound <= most;
-#else
-                        skip = bound <= most;
-#endif
-                        if (skip || walk.level == 0u)
-                            break;
-                        walk.level--;
-                    }
-                    end = span_end(volume, lattice, k, cell, walk.level, &span_cell);
+                    // A climb that has reached the threshold ends where all that follows is lower.
+                    bool ties = PROJECTION == PROJECTION_LOCAL && most >= cast.threshold;
+                    CellBox box;
+                    skip = walk_down_to_beat(&walk, node_class, node_range, levels, cell, cast.sign, most, ties, &box, &node_count);
+                    end = span_end(volume, lattice, k, cell, box, &span_cell);
                 }
             }
             // A skipped span's first segment matters unless it lies in skipped nodes wholly.

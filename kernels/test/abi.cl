@@ -16,9 +16,15 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(RayGrid, origin);
         layout[n++] = OFFSET(RayGrid, origin_dx);
         layout[n++] = OFFSET(RayGrid, origin_dy);
+        layout[n++] = OFFSET(RayGrid, origin_low);
+        layout[n++] = OFFSET(RayGrid, origin_dx_low);
+        layout[n++] = OFFSET(RayGrid, origin_dy_low);
         layout[n++] = OFFSET(RayGrid, dir_index);
         layout[n++] = OFFSET(RayGrid, dir_index_dx);
         layout[n++] = OFFSET(RayGrid, dir_index_dy);
+        layout[n++] = OFFSET(RayGrid, dir_index_low);
+        layout[n++] = OFFSET(RayGrid, dir_index_dx_low);
+        layout[n++] = OFFSET(RayGrid, dir_index_dy_low);
         layout[n++] = OFFSET(RayGrid, dir_world);
         layout[n++] = OFFSET(RayGrid, dir_world_dx);
         layout[n++] = OFFSET(RayGrid, dir_world_dy);
@@ -58,9 +64,9 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(ProjectionCast, threshold);
         layout[n++] = OFFSET(ProjectionCast, traverse);
         layout[n++] = OFFSET(ProjectionCast, probe);
+        layout[n++] = OFFSET(ProjectionCast, floor);
         layout[n++] = OFFSET(ProjectionCast, pad_0);
         layout[n++] = OFFSET(ProjectionCast, pad_1);
-        layout[n++] = OFFSET(ProjectionCast, pad_2);
     }
     {
         EmissionCast value;

@@ -14,7 +14,9 @@ kernel void interval(uint count, const global uint4 *sizes, const global float4 
     volume.nz = sizes[i].z;
     Ray ray;
     ray.origin = origins[i].xyz;
+    ray.origin_low = (float3)(0.0f);
     ray.dir = dirs[i].xyz;
+    ray.dir_low = (float3)(0.0f);
     Interval found = volume_interval(volume, ray);
     inside[i] = (float2)(found.enter, found.exit);
     entry[i] = (uint4)(found.axis, found.by_face, 0u, 0u);

@@ -17,7 +17,9 @@ kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
     volume.nz = size.z;
     Ray ray;
     ray.origin = origins[i].xyz;
+    ray.origin_low = (float3)(0.0f);
     ray.dir = dirs[i].xyz;
+    ray.dir_low = (float3)(0.0f);
     Interval interval = volume_interval(volume, ray);
     uint samples = 0u;
     uint spans_found = 0u;
@@ -34,7 +36,7 @@ kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
         for (uint k = 0u; k < samples && spans_found < room;) {
             uint3 cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
             uint touch = leaves_touch(last_cell, cell) ? 1u : 0u;
-            uint end = span_end(volume, lattice, k, cell, level, &last_cell);
+            uint end = span_end(volume, lattice, k, cell, node_box(cell, level, 0u), &last_cell);
             spans_out[i * room + spans_found] = (uint4)(k, end, touch, 0u);
             lasts[i * room + spans_found] = (uint4)(last_cell, 0u);
             spans_found++;

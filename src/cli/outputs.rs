@@ -20,7 +20,8 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast,
-        /// kind, with commas between, or all
+        /// kind, certificate (iso, exact sampling: 0 proven to miss, 1 proven to hit, 2 undecided),
+        /// with commas between, or all
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 

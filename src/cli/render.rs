@@ -91,6 +91,13 @@ impl RenderArguments {
             times_ms.render,
             rendered.device.name
         ));
+        if let Some(undecided) = rendered.frame.undecided() {
+            let pixels = rendered.frame.size.pixels();
+            message(format_args!(
+                "certificate: {undecided} of {pixels} pixels undecided, a share of {:.1e}",
+                undecided as f64 / pixels as f64
+            ));
+        }
         let Some(path) = &files.stats else {
             return Ok(());
         };

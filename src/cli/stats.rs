@@ -92,6 +92,9 @@ pub struct Counts {
     pub samples: u64,
     pub nodes: u64,
     pub hits: u64,
+    /// Pixels of which neither a hit nor a miss is proven; where the certificate was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<u64>,
 }
 
 impl Counts {
@@ -115,6 +118,7 @@ impl Counts {
             samples: sum(&frame.steps),
             nodes: sum(&frame.nodes),
             hits: hits as u64,
+            undecided: frame.undecided(),
         }
     }
 }

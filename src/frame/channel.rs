@@ -71,6 +71,7 @@ fn samples_of(frame: &Frame, layer: Layer, component: usize) -> Option<Samples<'
         Layer::Steps => Samples::Count(frame.steps.as_deref()?),
         Layer::Nodes => Samples::Count(frame.nodes.as_deref()?),
         Layer::Kind => Samples::Count(frame.kind.as_deref()?),
+        Layer::Certificate => Samples::Count(frame.certificate.as_deref()?),
         Layer::Cast => Samples::One,
     })
 }

@@ -33,6 +33,22 @@ pub enum Kind {
     Geometry = 3,
 }
 
+/// What is proven of a pixel of an isosurface: whether its ray meets the surface.
+///
+/// Proven means that no rounding error of the cast can change the answer, the voxels being taken
+/// as exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Certificate {
+    /// The ray meets no surface.
+    Miss = 0,
+    /// It does, and first where the picture says.
+    Hit = 1,
+    /// It touches the surface, or comes so near to it that rounding decides; or nothing was proven
+    /// (fixed steps, other pictures).
+    Undecided = 2,
+}
+
 /// All planes of one picture. Optional planes are there when they were asked for; each has
 /// `size.pixels()` entries.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,9 +70,18 @@ pub struct Frame {
     pub nodes: Option<Vec<u32>>,
     /// A [`Kind`] as a number.
     pub kind: Option<Vec<u32>>,
+    /// A [`Certificate`] as a number.
+    pub certificate: Option<Vec<u32>>,
 }
 
 impl Frame {
+    /// Pixels whose [`Certificate`] is undecided, where there are certificates.
+    pub fn undecided(&self) -> Option<u64> {
+        let certificates = self.certificate.as_ref()?;
+        let undecided = Certificate::Undecided as u32;
+        Some(certificates.iter().filter(|&&c| c == undecided).count() as u64)
+    }
+
     /// That every plane has one entry per pixel.
     ///
     /// # Errors
@@ -74,6 +99,7 @@ impl Frame {
             ("steps", entries(self.steps.as_ref())),
             ("nodes", entries(self.nodes.as_ref())),
             ("kind", entries(self.kind.as_ref())),
+            ("certificate", entries(self.certificate.as_ref())),
         ];
         for (name, entries) in planes {
             if let Some(entries) = entries
@@ -99,10 +125,11 @@ pub enum Layer {
     Nodes,
     Cast,
     Kind,
+    Certificate,
 }
 
 impl Layer {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Depth,
         Self::Normal,
         Self::Value,
@@ -110,6 +137,7 @@ impl Layer {
         Self::Nodes,
         Self::Cast,
         Self::Kind,
+        Self::Certificate,
     ];
 
     pub fn name(self) -> &'static str {
@@ -121,6 +149,7 @@ impl Layer {
             Self::Nodes => "nodes",
             Self::Cast => "cast",
             Self::Kind => "kind",
+            Self::Certificate => "certificate",
         }
     }
 
@@ -134,6 +163,7 @@ impl Layer {
             Self::Nodes => &["nodes.N"],
             Self::Cast => &["cast.V"],
             Self::Kind => &["kind.V"],
+            Self::Certificate => &["certificate.V"],
         }
     }
 }
@@ -148,6 +178,7 @@ pub struct Wanted {
     /// Both counters: steps and nodes.
     pub counters: bool,
     pub kind: bool,
+    pub certificate: bool,
 }
 
 impl Wanted {
@@ -158,6 +189,7 @@ impl Wanted {
         value: true,
         counters: true,
         kind: true,
+        certificate: true,
     };
 
     /// The planes that a file in `encoding` is written from; with `stats` also those that the
@@ -171,6 +203,7 @@ impl Wanted {
             value: carried(Layer::Value),
             counters: stats || carried(Layer::Steps) || carried(Layer::Nodes),
             kind: stats || carried(Layer::Kind),
+            certificate: carried(Layer::Certificate),
         }
     }
 }

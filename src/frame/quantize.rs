@@ -89,6 +89,7 @@ mod tests {
             steps: None,
             nodes: None,
             kind: None,
+            certificate: None,
         };
         assert_eq!(rgb8(&frame).unwrap(), [255, 128, 1]);
         assert_eq!(

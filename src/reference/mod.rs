@@ -25,9 +25,9 @@ pub use tracer::{Sight, Tracer};
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Certificate, Frame, Kind, Wanted};
 use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::scene::{Picture, Scene};
 use crate::volume::Volume;
 
 /// Rows whose f64 results are held at a time, before they are narrowed to the planes' f32.
@@ -67,6 +67,16 @@ pub fn render(
     Ok(frame)
 }
 
+/// Double precision decides every ray but those whose own cubics touch the iso value to the last bit;
+/// its answer is the one that others are compared with.
+fn certificate(sight: &Sight, scene: &Scene) -> Certificate {
+    match (&scene.picture, sight.kind) {
+        (Picture::Surface { .. }, Kind::Nothing) => Certificate::Miss,
+        (Picture::Surface { .. }, _) => Certificate::Hit,
+        _ => Certificate::Undecided,
+    }
+}
+
 /// A frame with the wanted planes, each with room for its pixels.
 fn empty_frame(scene: &Scene, wanted: Wanted) -> Frame {
     fn plane<T>(wanted: bool, pixels: usize) -> Option<Vec<T>> {
@@ -83,6 +93,7 @@ fn empty_frame(scene: &Scene, wanted: Wanted) -> Frame {
         steps: plane(wanted.counters, pixels),
         nodes: plane(wanted.counters, pixels),
         kind: plane(wanted.kind, pixels),
+        certificate: plane(wanted.certificate, pixels),
     }
 }
 
@@ -105,4 +116,5 @@ fn push(frame: &mut Frame, sight: &Sight, scene: &Scene) {
     append(&mut frame.steps, || sight.cells);
     append(&mut frame.nodes, || 0);
     append(&mut frame.kind, || sight.kind as u32);
+    append(&mut frame.certificate, || certificate(sight, scene) as u32);
 }

@@ -35,9 +35,16 @@ twin! {
         origin: [f32; 4],
         origin_dx: [f32; 4],
         origin_dy: [f32; 4],
+        /// What the floats above leave out, as for the directions.
+        origin_low: [f32; 4],
+        origin_dx_low: [f32; 4],
+        origin_dy_low: [f32; 4],
         dir_index: [f32; 4],
         dir_index_dx: [f32; 4],
         dir_index_dy: [f32; 4],
+        dir_index_low: [f32; 4],
+        dir_index_dx_low: [f32; 4],
+        dir_index_dy_low: [f32; 4],
         dir_world: [f32; 4],
         dir_world_dx: [f32; 4],
         dir_world_dy: [f32; 4],
@@ -84,9 +91,10 @@ twin! {
         threshold: f32,
         traverse: u32,
         probe: u32,
+        /// Of sign · Φ, in stored units: what is not above it need not be found.
+        floor: f32,
         pad_0: u32,
         pad_1: u32,
-        pad_2: u32,
     }
 }
 

@@ -35,6 +35,18 @@ pub fn by_iso(octree: &Octree, iso: f32) -> Vec<u8> {
     })
 }
 
+/// Classes of all nodes against a floor in stored units, of sign · Φ: `Below` where nothing is above
+/// it.
+pub fn by_floor(octree: &Octree, sign: f32, floor: f32) -> Vec<u8> {
+    classes(octree, |_, [min, max]| {
+        if f32::max(sign * min, sign * max) <= floor {
+            Class::Below
+        } else {
+            Class::Visit
+        }
+    })
+}
+
 /// Classes of all nodes under a transfer function: `Below` where every value of the node's range
 /// is fully transparent and `skip` allows it; `Homogeneous` for leaves within `limit`.
 pub fn by_opacity(octree: &Octree, knots: &Knots, skip: bool, limit: Option<Limit>) -> Vec<u8> {

@@ -29,7 +29,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
     }
     let knots = Knots::of(transfer, view.volume);
     let skip = view.scene.sampling.skip;
-    let node_class = run.node_classes(|| {
+    let node_class = view.upload_classes(run, || {
         let limit = homogeneity.map(|homogeneity| Limit::new(homogeneity, transfer, view.volume));
         classify::by_opacity(view.octree, &knots, skip, limit)
     })?;
@@ -87,6 +87,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         normal: None,
         value: None,
         kind: None,
+        certificate: None,
         counters,
         other_bytes: node_class.bytes() + on_device.bytes() + averages_bytes,
     })

@@ -11,6 +11,7 @@ mod pipeline;
 mod planes;
 mod ranges;
 mod rays;
+mod reach;
 mod twins;
 mod variant;
 

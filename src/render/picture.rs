@@ -1,17 +1,22 @@
 //! The passes of each kind of picture: straight-line code, the order of lines is the schedule.
 
+use std::time::Instant;
+
 use crate::error::Result;
 use crate::frame::Wanted;
+use crate::gpu::Buffer;
 use crate::octree::Octree;
-use crate::scene::{Phong, Projection, Refine, Rgb, Scene, Window};
+use crate::scene::{Phong, Projection, Refine, Rgb, SamplingMethod, Scene, Traverse, Window};
 use crate::volume::Volume;
 
 use super::abi::{ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
 use super::passes::{
-    DeviceVolume, Run, cast_maximum, cast_surface, shade_surface, surface_normal, window_value,
+    DeviceVolume, Run, cast_maximum, cast_surface, exact_projection, exact_surface, shade_surface,
+    surface_normal, window_value,
 };
 use super::planes::Planes;
+use super::reach::add_reach;
 use super::twins::{self, stored};
 use super::variant::{ProjectionLoop, refine_number, traverse_number};
 
@@ -33,6 +38,38 @@ impl View<'_> {
     pub fn traverse(&self) -> u32 {
         traverse_number(&self.scene.sampling)
     }
+
+    /// The classes on the device, with their reach where that is how space is skipped.
+    pub fn upload_classes(
+        &self,
+        run: &mut Run,
+        classify: impl FnOnce() -> Vec<u8>,
+    ) -> Result<Buffer<u8>> {
+        let start = Instant::now();
+        let mut classes = classify();
+        if self.scene.sampling.traverse == Traverse::Distance {
+            add_reach(self.octree, &mut classes);
+        }
+        run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
+        Buffer::upload(run.device, "octree's classes", &classes)
+    }
+
+    /// What of sign · Φ a projection need not find, in stored units: what is not above the volume's
+    /// own end, unless it may be a local maximum that counts; or, where only the picture is wanted,
+    /// what the window shows as it shows its own end.
+    fn floor(&self, of: Projection, window: Window) -> f32 {
+        let rescale = self.volume.rescale();
+        let [min, max] = self.octree.ranges()[self.octree.ranges().len() - 1];
+        let picture_alone = !(self.wanted.value || self.wanted.depth);
+        match of {
+            Projection::Maximum if picture_alone => min.max(stored(rescale, window.low())),
+            Projection::Minimum if picture_alone => -max.min(stored(rescale, window.high())),
+            Projection::Maximum => min,
+            Projection::Minimum => -max,
+            Projection::LocalMaximum { threshold } if stored(rescale, threshold) > min => min,
+            Projection::LocalMaximum { .. } | Projection::Mean => f32::NEG_INFINITY,
+        }
+    }
 }
 
 /// `iso`: cast, normals where they are needed, shade.
@@ -47,7 +84,7 @@ pub fn surface(
 ) -> Result<Planes> {
     let wanted = view.wanted;
     let iso = stored(view.volume.rescale(), iso);
-    let node_class = run.node_classes(|| classify::by_iso(view.octree, iso))?;
+    let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso))?;
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -66,17 +103,33 @@ pub fn surface(
         None
     };
     let mut counters = run.counters(wanted.counters)?;
-    cast_surface(
-        run,
-        view.uploaded,
-        &node_class,
-        &view.rays,
-        &cast,
-        &mut hit_mm,
-        &mut kind,
-        layers.as_mut().map(|(depth, value)| (depth, value)),
-        counters.as_mut(),
-    )?;
+    let proven = wanted.certificate && view.scene.sampling.method == SamplingMethod::Exact;
+    let mut certificate = proven.then(|| run.plane("certificate plane")).transpose()?;
+    match view.scene.sampling.method {
+        SamplingMethod::Fixed => cast_surface(
+            run,
+            view.uploaded,
+            &node_class,
+            &view.rays,
+            &cast,
+            &mut hit_mm,
+            &mut kind,
+            layers.as_mut().map(|(depth, value)| (depth, value)),
+            counters.as_mut(),
+        )?,
+        SamplingMethod::Exact => exact_surface(
+            run,
+            view.uploaded,
+            &node_class,
+            &view.rays,
+            &cast,
+            &mut hit_mm,
+            &mut kind,
+            layers.as_mut().map(|(depth, value)| (depth, value)),
+            certificate.as_mut(),
+            counters.as_mut(),
+        )?,
+    }
 
     let normal = if wanted.normal || phong.is_some() {
         let mut normal = run.plane("normal plane")?;
@@ -99,6 +152,7 @@ pub fn surface(
         normal,
         value,
         kind: Some(kind),
+        certificate,
         counters,
         other_bytes: hit_mm.bytes() + node_class.bytes(),
     })
@@ -117,24 +171,31 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
             stored(view.volume.rescale(), threshold),
         ),
     };
+    let floor = view.floor(of, window);
     let cast = ProjectionCast {
         step_mm: view.step_mm(),
         sign,
         threshold,
         traverse: view.traverse(),
         probe: u32::from(view.scene.sampling.probe),
+        floor,
         pad_0: 0,
         pad_1: 0,
-        pad_2: 0,
     };
+    let node_class = view.upload_classes(run, || classify::by_floor(view.octree, sign, floor))?;
     let mut kind = run.plane("kind plane")?;
     let mut value = run.plane("value plane")?;
     let mut depth = wanted.depth.then(|| run.plane("depth plane")).transpose()?;
     let mut counters = run.counters(wanted.counters)?;
-    cast_maximum(
+    let project = match view.scene.sampling.method {
+        SamplingMethod::Fixed => cast_maximum,
+        SamplingMethod::Exact => exact_projection,
+    };
+    project(
         run,
         which,
         view.uploaded,
+        &node_class,
         &view.rays,
         &cast,
         &mut kind,
@@ -157,7 +218,8 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         normal: None,
         value: Some(value),
         kind: Some(kind),
+        certificate: None,
         counters,
-        other_bytes: 0,
+        other_bytes: node_class.bytes(),
     })
 }

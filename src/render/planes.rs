@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::{Frame, Kind, Wanted};
+use crate::frame::{Certificate, Frame, Kind, Wanted};
 use crate::gpu::{Buffer, Device, DeviceKind, Element};
 use crate::volume::Rescale;
 
@@ -18,8 +18,8 @@ pub fn check_room(device: &Device, size: ImageSize, wanted: Wanted, held_bytes: 
     const COLOR: u64 = 16;
     const SCALAR: u64 = 4;
     let display = if wanted.display { COLOR } else { 0 };
-    // Colour, normal, hit, kind, value, depth, and both counters.
-    let on_device = 2 * COLOR + 6 * SCALAR + display;
+    // Colour, normal, hit, kind, certificate, value, depth, and both counters.
+    let on_device = 2 * COLOR + 7 * SCALAR + display;
     let read_back = match device.info().kind {
         DeviceKind::Cpu => on_device,
         DeviceKind::Gpu | DeviceKind::Accelerator => 0,
@@ -45,6 +45,7 @@ pub struct Planes {
     /// In stored units.
     pub value: Option<Buffer<f32>>,
     pub kind: Option<Buffer<u32>>,
+    pub certificate: Option<Buffer<u32>>,
     pub counters: Option<Counters>,
     /// Of tables and planes that only the passes needed.
     pub other_bytes: u64,
@@ -65,6 +66,7 @@ impl Planes {
             + of(self.normal.as_ref())
             + of(self.value.as_ref())
             + of(self.kind.as_ref())
+            + of(self.certificate.as_ref())
             + counters
             + self.other_bytes
     }
@@ -107,6 +109,11 @@ impl Planes {
             steps: counter(|counters| &counters.steps)?,
             nodes: counter(|counters| &counters.nodes)?,
             kind: kind.filter(|_| wanted.kind),
+            certificate: layers.plane(
+                wanted.certificate,
+                self.certificate.as_ref(),
+                Certificate::Undecided as u32,
+            )?,
         })
     }
 }

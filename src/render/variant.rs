@@ -1,6 +1,6 @@
 //! The switches that reshape an inner loop, and the constants that kernels take from the host.
 
-use crate::frame::Kind;
+use crate::frame::{Certificate, Kind};
 use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
 use crate::scene::{
@@ -10,6 +10,7 @@ use crate::volume::{Volume, VoxelType};
 
 use super::classify::Class;
 use super::medium;
+use super::reach::{CLASS_BITS, REACH_MOST};
 
 /// What every pass over a volume is built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -79,6 +80,8 @@ const fn traverse_constant(traverse: Traverse) -> u32 {
         Traverse::Uniform => 1,
         Traverse::KdRestart => 2,
         Traverse::Hierarchical => 3,
+        Traverse::Revelles => 4,
+        Traverse::Distance => 5,
     }
 }
 
@@ -154,6 +157,13 @@ const CONSTANTS: &[(&str, u32)] = &[
         "TRAVERSE_HIERARCHICAL",
         traverse_constant(Traverse::Hierarchical),
     ),
+    ("TRAVERSE_REVELLES", traverse_constant(Traverse::Revelles)),
+    ("TRAVERSE_DISTANCE", traverse_constant(Traverse::Distance)),
+    ("CLASS_BITS", CLASS_BITS),
+    ("REACH_MOST", REACH_MOST),
+    ("CERTIFICATE_MISS", Certificate::Miss as u32),
+    ("CERTIFICATE_HIT", Certificate::Hit as u32),
+    ("CERTIFICATE_UNDECIDED", Certificate::Undecided as u32),
     ("CLASS_BELOW", Class::Below as u32),
     ("CLASS_ABOVE", Class::Above as u32),
     ("CLASS_VISIT", Class::Visit as u32),

@@ -23,7 +23,7 @@ pub use light::{Light, Phong, Reflection};
 pub use options::*;
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
-pub use sampling::{Filter, Refine, RefineMethod, Sampling, Traverse};
+pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Traverse};
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};
 pub use view::{Orientation, fit_distance_mm};

@@ -22,6 +22,32 @@ pub enum Traverse {
     KdRestart,
     /// Up and down from the present node.
     Hierarchical,
+    /// Top down, each node on the way once, its children in the order of the ray (Revelles et al.
+    /// 2000, in integers, so that rounding cannot change the order).
+    Revelles,
+    /// No hierarchy, but every finest node knows how far around it is nothing else (a Chebyshev
+    /// distance map; Deakin and Knackstedt 2019).
+    Distance,
+}
+
+impl Traverse {
+    pub const ALL: [Self; 5] = [
+        Self::Uniform,
+        Self::KdRestart,
+        Self::Hierarchical,
+        Self::Revelles,
+        Self::Distance,
+    ];
+}
+
+/// Where on a ray the field is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum SamplingMethod {
+    /// At fixed steps.
+    Fixed,
+    /// Everywhere: in every cell that matters, the field's cubic along the ray is solved.
+    #[default]
+    Exact,
 }
 
 /// How the root between two samples is found.
@@ -96,9 +122,11 @@ impl std::fmt::Display for Refine {
     }
 }
 
-/// Fixed steps on the sample lattice.
+/// How a ray is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
+    /// Of surfaces and projections.
+    pub method: SamplingMethod,
     /// In voxels of the smallest spacing, in [`Sampling::STEP_VOXELS`].
     pub step_voxels: f64,
     pub filter: Filter,
@@ -118,6 +146,7 @@ impl Sampling {
 impl Default for Sampling {
     fn default() -> Self {
         Self {
+            method: SamplingMethod::default(),
             step_voxels: 0.5,
             filter: Filter::Linear,
             traverse: Traverse::Hierarchical,

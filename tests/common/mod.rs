@@ -1,6 +1,8 @@
 //! What the tests that need an OpenCL device share.
 #![allow(dead_code)] // each test program uses its own part
 
+use std::path::PathBuf;
+
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
 use angioray::frame::{Frame, Wanted};
@@ -9,8 +11,8 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Camera, Lens, Light, Picture, Sampling, Scene, Tone};
-use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
+use angioray::scene::{Camera, Lens, Light, Picture, Sampling, SamplingMethod, Scene, Tone};
+use angioray::volume::{Geometry, NonFinite, ReadOptions, Rescale, Volume, Voxels, read};
 use glam::DVec3;
 
 /// The device under test: `ANGIORAY_TEST_DEVICE`, or the default one. Without any, says why and
@@ -72,6 +74,32 @@ pub fn octree(volume: &Volume) -> Octree {
     Octree::build(volume, Leaf::default(), &Silent).unwrap()
 }
 
+/// Real volumes, below the folder that `ANGIORAY_DATA` names.
+pub const ANEURISM: &str = "aneurism_toxi/aneurism.raw.gz";
+pub const CT_AVM: &str = "niivue_CT_AVM/CT_AVM.nii.gz";
+pub const CHRIS_MRA: &str = "niivue_chris_MRA/chris_MRA.nii.gz";
+pub const AORTA: &str = "vmtk_aorta/aorta.mha";
+pub const STENT: &str = "stent_npz/stent.npz";
+
+/// One of them; `None`, and why, where there is none.
+pub fn real_volume(file: &str) -> Option<Volume> {
+    let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
+        eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");
+        return None;
+    };
+    let path = folder.join(file);
+    if !path.exists() {
+        eprintln!("skipped: there is no {}", path.display());
+        return None;
+    }
+    let mut options = ReadOptions::default();
+    if file.ends_with(".raw.gz") {
+        options.raw.size = Some("256x256x256".parse().unwrap());
+        options.raw.element = Some("u8".parse().unwrap());
+    }
+    Some(read(&path, &options, &Silent).unwrap())
+}
+
 /// The whole volume seen in perspective from an oblique direction.
 pub fn camera(volume: &Volume, toward_eye: DVec3) -> Camera {
     let (center, radius_mm) = volume.bounding_sphere();
@@ -91,7 +119,10 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         size: ImageSize::new(size_px, size_px).unwrap(),
         camera: camera(volume, OBLIQUE),
         picture,
-        sampling: Sampling::default(),
+        sampling: Sampling {
+            method: SamplingMethod::Fixed,
+            ..Sampling::default()
+        },
         light: Light::default(),
         tone: Tone::default(),
     }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use angioray::error::ErrorKind;
 use angioray::extent::ImageSize;
-use angioray::frame::{Encoding, Format, Frame, Kind, Layer, Wanted, write};
+use angioray::frame::{Certificate, Encoding, Format, Frame, Kind, Layer, Wanted, write};
 
 const METADATA: [(&str, &str); 2] = [
     ("scene", "mode = \"iso\"\n# Gefäß, Ω ≥ 300 HU\n"),
@@ -33,6 +33,7 @@ fn nothing_hit(size: ImageSize, wanted: Wanted) -> Frame {
         steps: plane(wanted.counters, 0, size),
         nodes: plane(wanted.counters, 0, size),
         kind: plane(wanted.kind, Kind::Nothing as u32, size),
+        certificate: plane(wanted.certificate, Certificate::Undecided as u32, size),
     }
 }
 

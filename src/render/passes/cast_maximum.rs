@@ -14,6 +14,7 @@ pub fn cast_maximum(
     run: &mut Run,
     which: ProjectionLoop,
     volume: &DeviceVolume,
+    node_class: &Buffer<u8>,
     rays: &RayGrid,
     cast: &ProjectionCast,
     kind: &mut Buffer<u32>,
@@ -31,6 +32,7 @@ pub fn cast_maximum(
     let pass = run.built.pass(run.device, "cast_maximum", defines, || {
         let mut signature = vec![
             voxels(variant),
+            input::<u8>("node_class"),
             input::<[f32; 2]>("node_range"),
             levels(),
             value::<VolumeGrid>("volume"),
@@ -48,6 +50,7 @@ pub fn cast_maximum(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
+        .input(node_class)
         .input(&volume.node_range)
         .input(&volume.levels)
         .value(&volume.grid)

@@ -4,6 +4,8 @@ mod adaptive_emission;
 mod cast_emission;
 mod cast_maximum;
 mod cast_surface;
+mod exact_projection;
+mod exact_surface;
 mod shade_surface;
 mod surface_normal;
 mod tone_curve;
@@ -26,6 +28,8 @@ pub use adaptive_emission::adaptive_emission;
 pub use cast_emission::{DeviceTransfer, cast_emission};
 pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;
+pub use exact_projection::exact_projection;
+pub use exact_surface::exact_surface;
 pub use shade_surface::shade_surface;
 pub use surface_normal::surface_normal;
 pub use tone_curve::tone_curve;
@@ -80,14 +84,6 @@ impl Run<'_> {
     /// Room for one plane of the frame; `what` names it in errors.
     pub fn plane<T: Element>(&self, what: &str) -> Result<Buffer<T>> {
         Buffer::new(self.device, what, self.size.pixels())
-    }
-
-    /// The nodes' classes on the device.
-    pub fn node_classes(&mut self, classify: impl FnOnce() -> Vec<u8>) -> Result<Buffer<u8>> {
-        let start = Instant::now();
-        let classes = classify();
-        self.classify_ms += start.elapsed().as_secs_f64() * 1e3;
-        Buffer::upload(self.device, "octree's classes", &classes)
     }
 
     pub fn counters(&self, wanted: bool) -> Result<Option<Counters>> {

@@ -39,7 +39,7 @@ pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
-use crate::scene::{Scene, TransferFile};
+use crate::scene::{SamplingMethod, Scene, TransferFile};
 
 /// Everything that determines a picture, as far as it was said.
 #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
@@ -75,7 +75,12 @@ impl SceneOptions {
     /// These flags over a scene file's options. What a flag rules out in the file, such as the eye
     /// when the flag is a view, or the iso value when it is another mode, goes with it.
     #[must_use]
-    pub fn over(self, file: Self) -> Self {
+    pub fn over(self, mut file: Self) -> Self {
+        match self.sampling.sampling {
+            None if self.steps_given() => file.sampling.sampling = None,
+            Some(SamplingMethod::Exact) => file = file.without_steps(),
+            _ => {}
+        }
         Self {
             volume: self.volume.over(file.volume),
             camera: self.camera.clone().over(self.camera.keep_of(file.camera)),
@@ -97,6 +102,13 @@ impl SceneOptions {
     pub fn checked(mut self) -> Result<Self> {
         self.camera.check()?;
         self.picture.check()?;
+        if self.picture.mode() == Mode::Dvr && self.sampling.sampling == Some(SamplingMethod::Exact)
+        {
+            return Err(Error::usage(
+                "'sampling = exact' does not go with mode 'dvr': an integral is approached, not solved",
+            )
+            .hint("choose a smaller --step"));
+        }
         if let Some(choice) = self.picture.tf.take() {
             self.picture.tf = Some(TransferChoice::Written(choice.read()?));
         }
@@ -108,13 +120,17 @@ impl SceneOptions {
     /// # Errors
     /// As [`SceneOptions::checked`]; an empty window; an impossible camera.
     pub fn resolve(&self, subject: &Subject) -> Result<Resolved> {
-        let options = Self {
+        let method = self.method();
+        let mut options = Self {
             volume: self.volume.clone().filled(),
             picture: self.picture.clone().filled(subject)?,
             camera: self.camera.clone().filled(subject)?,
-            sampling: self.sampling.clone().filled()?,
+            sampling: self.sampling.clone().filled(method)?,
             tone: self.tone.clone().filled()?,
         };
+        if method == Some(SamplingMethod::Exact) {
+            options = options.without_steps();
+        }
         let scene = Scene {
             size: options.camera.size()?,
             camera: options.camera.camera()?,
@@ -131,8 +147,40 @@ impl SceneOptions {
         })
     }
 
+    /// How surfaces and projections are sampled: exactly, unless steps are asked for by their name
+    /// or by what belongs to them. Emission and absorption is integrated, not looked for.
+    fn method(&self) -> Option<SamplingMethod> {
+        if self.picture.mode() == Mode::Dvr {
+            return None;
+        }
+        let implied = if self.steps_given() {
+            SamplingMethod::Fixed
+        } else {
+            SamplingMethod::default()
+        };
+        Some(self.sampling.sampling.unwrap_or(implied))
+    }
+
+    /// Whether something is said that only fixed steps have.
+    fn steps_given(&self) -> bool {
+        let sampling = &self.sampling;
+        sampling.step.is_some() || sampling.probe.is_some() || self.picture.refine.is_some()
+    }
+
+    fn without_steps(mut self) -> Self {
+        self.sampling.step = None;
+        self.sampling.probe = None;
+        self.picture.refine = None;
+        self
+    }
+
     fn notes(&self, filled: &Self, subject: &Subject) -> Vec<String> {
         let mut notes = Vec::new();
+        if filled.sampling.sampling == Some(SamplingMethod::Exact) && self.steps_given() {
+            notes.push(
+                "sampling = exact takes no steps: step, refine and probe have no effect".to_owned(),
+            );
+        }
         let given = &self.picture;
         let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {
             let Some(Threshold::Value(value)) = filled else {

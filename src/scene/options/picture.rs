@@ -38,7 +38,7 @@ group! {
         caps: Switch,
 
         /// iso: how the hit is refined between samples: none, bisection, regula-falsi, illinois or
-        /// newton, :N for N iterations [default: regula-falsi:5]
+        /// newton, :N for N iterations; with fixed steps [default: regula-falsi:5]
         #[arg(long, value_name = "METHOD[:N]")]
         refine: Refine,
 

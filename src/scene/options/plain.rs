@@ -160,5 +160,6 @@ plain!(
     crate::scene::Quadrature,
     crate::scene::HomogeneityRule,
     crate::scene::Filter,
+    crate::scene::SamplingMethod,
     crate::scene::Traverse,
 );

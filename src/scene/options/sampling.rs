@@ -4,14 +4,21 @@ use super::group::group;
 use super::numbers::StepVoxels;
 use super::words::Switch;
 use crate::error::Result;
-use crate::scene::{Filter, Sampling, Traverse};
+use crate::scene::{Filter, Sampling, SamplingMethod, Traverse};
 
 group! {
     /// How rays are followed through the volume.
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Sampling")]
     pub struct SamplingOptions {
-        /// Distance of samples along a ray, in voxels of the smallest spacing [default: 0.5]
+        /// Where a surface or a projected value is looked for: exact, solving the field in every
+        /// cell on the way, so that nothing is missed; or fixed, at steps [default: exact; fixed
+        /// where --step, --refine or --probe is given]
+        #[arg(long, value_name = "fixed|exact")]
+        sampling: SamplingMethod,
+
+        /// Distance of samples along a ray, in voxels of the smallest spacing, where they are fixed
+        /// [default: 0.5]
         #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         step: StepVoxels,
 
@@ -19,8 +26,8 @@ group! {
         #[arg(long, value_name = "nearest|linear")]
         filter: Filter,
 
-        /// How empty space is skipped: uniform, kd-restart or hierarchical; never changes the
-        /// picture [default: hierarchical]
+        /// How empty space is skipped: uniform, kd-restart, hierarchical, revelles or distance; never
+        /// changes the picture [default: hierarchical]
         #[arg(long, value_name = "NAME")]
         traverse: Traverse,
 
@@ -28,7 +35,7 @@ group! {
         #[arg(long, value_name = "on|off")]
         skip: Switch,
 
-        /// Look between two samples where the field's slopes along the ray point at a peak between
+        /// Fixed steps: look between two samples where the field's slopes along the ray point at a peak between
         /// them, for the surface in iso and the extremum in mip, minip and lmip; off: fixed steps
         /// and nothing else [default: on]
         #[arg(long, value_name = "on|off")]
@@ -37,10 +44,11 @@ group! {
 }
 
 impl SamplingOptions {
-    /// With every default in its place.
-    pub(super) fn filled(self) -> Result<Self> {
+    /// With every default in its place; `method` is `None` for a picture that has no choice of it.
+    pub(super) fn filled(self, method: Option<SamplingMethod>) -> Result<Self> {
         let default = Sampling::default();
         Ok(Self {
+            sampling: method,
             step: match self.step {
                 Some(step) => Some(step),
                 None => Some(StepVoxels::new(default.step_voxels)?),
@@ -55,6 +63,7 @@ impl SamplingOptions {
     pub(super) fn sampling(&self) -> Sampling {
         let default = Sampling::default();
         Sampling {
+            method: self.sampling.unwrap_or(default.method),
             step_voxels: self.step.map_or(default.step_voxels, StepVoxels::get),
             filter: self.filter.unwrap_or(default.filter),
             traverse: self.traverse.unwrap_or(default.traverse),

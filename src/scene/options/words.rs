@@ -1,7 +1,9 @@
 //! Choices by name: what a flag calls each, in one place.
 
 use super::plain::plain;
-use crate::scene::{Filter, HomogeneityRule, QuadratureMethod, RefineMethod, Traverse};
+use crate::scene::{
+    Filter, HomogeneityRule, QuadratureMethod, RefineMethod, SamplingMethod, Traverse,
+};
 
 /// Gives an enum its names: `FromStr`, `Display`.
 macro_rules! words {
@@ -111,6 +113,7 @@ words!(QuadratureMethod, "a quadrature": Riemann = "riemann", Midpoint = "midpoi
     Adaptive = "adaptive");
 words!(HomogeneityRule, "a rule for homogeneous nodes": Optical = "optical", Range = "range");
 words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
-    Hierarchical = "hierarchical");
+    Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
+words!(SamplingMethod, "a sampling": Fixed = "fixed", Exact = "exact");
 
 plain!(Mode, Shading, Switch, NonFiniteRule, View);

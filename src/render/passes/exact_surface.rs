@@ -1,0 +1,70 @@
+//! `kernels/pass/exact_surface.cl`
+
+use crate::error::Result;
+use crate::gpu::{Buffer, input, output, value};
+use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
+
+use super::cast_surface::Layers;
+use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+
+/// The first point of each ray where Φ − iso changes sign, solved in every cell: `hit_mm` from the base
+/// plane, `kind`, and what is proven of it.
+#[allow(clippy::too_many_arguments)]
+pub fn exact_surface(
+    run: &mut Run,
+    volume: &DeviceVolume,
+    node_class: &Buffer<u8>,
+    rays: &RayGrid,
+    cast: &SurfaceCast,
+    hit_mm: &mut Buffer<f32>,
+    kind: &mut Buffer<u32>,
+    layers: Option<Layers>,
+    certificate: Option<&mut Buffer<u32>>,
+    counters: Option<&mut Counters>,
+) -> Result<()> {
+    let (with_layers, with_counters) = (layers.is_some(), counters.is_some());
+    let with_certificate = certificate.is_some();
+    let variant = run.variant;
+    let defines = variant
+        .defines()
+        .with("LAYERS", switch(with_layers))
+        .with("CERTIFICATE", switch(with_certificate))
+        .with("COUNTERS", switch(with_counters));
+    let pass = run.built.pass(run.device, "exact_surface", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            levels(),
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<SurfaceCast>("cast"),
+            output::<f32>("hit_mm"),
+            output::<u32>("kind"),
+        ];
+        if with_layers {
+            signature.extend([output::<f32>("depth"), output::<f32>("value")]);
+        }
+        if with_certificate {
+            signature.push(output::<u32>("certificate"));
+        }
+        signature.extend(Counters::parameters(with_counters));
+        signature
+    })?;
+    let mut launch = pass
+        .launch(run.device)
+        .input(&volume.voxels)
+        .input(node_class)
+        .input(&volume.levels)
+        .value(&volume.grid)
+        .value(rays)
+        .value(cast)
+        .output(hit_mm)
+        .output(kind);
+    if let Some((depth, value)) = layers {
+        launch = launch.output(depth).output(value);
+    }
+    if let Some(certificate) = certificate {
+        launch = launch.output(certificate);
+    }
+    Counters::give(counters, launch).run(run.size, run.work_group, run.timings)
+}

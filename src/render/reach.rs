@@ -1,0 +1,131 @@
+//! How far around each finest node nothing else begins: a Chebyshev distance map over the leaves
+//! (Deakin and Knackstedt 2019), kept in the upper bits of their classes.
+
+use crate::octree::{Level, Octree};
+
+use super::classify::Class;
+
+/// Of a node's byte its class takes the lowest bits, its reach the others.
+pub const CLASS_BITS: u32 = 2;
+/// The farthest reach that a byte holds, in leaves.
+pub const REACH_MOST: u32 = (1 << (8 - CLASS_BITS)) - 1;
+
+/// Adds to the byte of every leaf that can be leapt over its reach: so many leaves around it, in
+/// every direction, diagonals included, are of its class too.
+///
+/// A leaf below the iso value never borders on one above it: their ranges share the voxels between
+/// them. So the distance to the nearest leaf that cannot be leapt over bounds both.
+pub fn add_reach(octree: &Octree, classes: &mut [u8]) {
+    let leaves = octree.levels()[0];
+    let most = REACH_MOST as u8 + 1;
+    let leap = |class: u8| class == Class::Below as u8 || class == Class::Above as u8;
+    let own = &mut classes[..leaves.nodes()];
+    let mut distance: Vec<u8> = own
+        .iter()
+        .map(|&class| if leap(class) { most } else { 0 })
+        .collect();
+    // Two sweeps are exact for the chessboard distance (Rosenfeld and Pfaltz 1968).
+    sweep(leaves, &mut distance, false);
+    sweep(leaves, &mut distance, true);
+    for (byte, distance) in own.iter_mut().zip(distance) {
+        *byte |= distance.saturating_sub(1) << CLASS_BITS;
+    }
+}
+
+/// One more than the least of the neighbours that the sweep has been to, where that is less.
+fn sweep(leaves: Level, distance: &mut [u8], backward: bool) {
+    let [nx, ny, nz] = leaves.size.map(|n| n as isize);
+    let order = |n: isize| (0..n).map(move |i| if backward { n - 1 - i } else { i });
+    let toward = if backward { 1 } else { -1 };
+    for z in order(nz) {
+        for y in order(ny) {
+            for x in order(nx) {
+                let at = ((z * ny + y) * nx + x) as usize;
+                if distance[at] == 0 {
+                    continue;
+                }
+                let mut least = distance[at];
+                for (dz, dy) in [(toward, -1), (toward, 0), (toward, 1), (0, toward), (0, 0)] {
+                    let (z, y) = (z + dz, y + dy);
+                    if !(0..nz).contains(&z) || !(0..ny).contains(&y) {
+                        continue;
+                    }
+                    let row = (z * ny + y) * nx;
+                    // In its own row only the leaf before it has been visited.
+                    let last_dx = if (dz, dy) == (0, 0) { -1 } else { 1 };
+                    for dx in -1..=last_dx {
+                        let x = x - toward * dx;
+                        if (0..nx).contains(&x) {
+                            least = least.min(distance[(row + x) as usize].saturating_add(1));
+                        }
+                    }
+                }
+                distance[at] = least;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::Dims;
+    use crate::octree::Leaf;
+    use crate::progress::Silent;
+    use crate::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
+
+    fn octree(dims: [u64; 3]) -> Octree {
+        let dims = Dims::new(dims).unwrap();
+        let voxels = Voxels::from(vec![0u8; dims.voxels() as usize]);
+        let (geometry, rescale) = (Geometry::default(), Rescale::IDENTITY);
+        let volume = Volume::new(dims, voxels, geometry, rescale, NonFinite::Refuse).unwrap();
+        Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap()
+    }
+
+    /// Against the definition, leaf by leaf; gives how many leaves reach somewhere.
+    fn check(dims: [u64; 3], visit: impl Fn(usize) -> bool) -> usize {
+        let octree = octree(dims);
+        let leaves = octree.levels()[0];
+        let class = |i: usize| if visit(i) { Class::Visit } else { Class::Below };
+        let all: usize = octree.levels().iter().map(Level::nodes).sum();
+        let mut classes: Vec<u8> = (0..all).map(|i| class(i) as u8).collect();
+        let before = classes.clone();
+        add_reach(&octree, &mut classes);
+        assert_eq!(classes[leaves.nodes()..], before[leaves.nodes()..]);
+        let [nx, ny, _] = leaves.size.map(|n| n as usize);
+        let place = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
+        let apart = |a: usize, b: usize| {
+            let (a, b) = (place(a), place(b));
+            (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap()
+        };
+        let mut reaching = 0;
+        for i in 0..leaves.nodes() {
+            let nearest = (0..leaves.nodes())
+                .filter(|&j| visit(j))
+                .map(|j| apart(i, j))
+                .min();
+            let reach = nearest.unwrap_or(usize::MAX).saturating_sub(1);
+            let expected = if visit(i) {
+                0
+            } else {
+                reach.min(REACH_MOST as usize)
+            };
+            assert_eq!(usize::from(classes[i] >> CLASS_BITS), expected, "leaf {i}");
+            assert_eq!(classes[i] & 3, before[i]);
+            reaching += usize::from(expected > 0);
+        }
+        reaching
+    }
+
+    #[test]
+    fn reach_is_the_chessboard_distance_less_one() {
+        for seed in 0..40_usize {
+            let lone = |i: usize| (i + seed * 7).is_multiple_of(61);
+            assert!(check([29, 33, 21], lone) > 0);
+            assert!(check([5, 60, 9], |i| i == seed % 20) > 0);
+        }
+        assert_eq!(check([9, 9, 9], |_| true), 0);
+        assert!(check([300, 5, 5], |i| i == 0) > 60);
+        assert!(check([13, 13, 13], |_| false) > 0);
+    }
+}

@@ -109,7 +109,8 @@ twin! {
         traverse: u32,
         /// Of the adaptive quadrature's error.
         bound: f32,
-        pad: u32,
+        /// The most by which the knots' colours differ in a channel.
+        color_spread: f32,
     }
 }
 

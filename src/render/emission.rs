@@ -100,6 +100,7 @@ fn transfer_on_device(run: &Run, knots: &Knots, with_sums: bool) -> Result<Devic
         colors: Buffer::upload(run.device, "transfer function", &knots.colors)?,
         sums: Buffer::upload(run.device, "transfer function's sums", &sums)?,
         knots: knots.values.len() as u32,
+        color_spread: knots.color_spread(),
     })
 }
 
@@ -133,7 +134,7 @@ fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -
             view.traverse()
         },
         bound: ((1.0 - ENDED_EARLY) * bound) as f32,
-        pad: 0,
+        color_spread: on_device.color_spread,
     }
 }
 

@@ -64,6 +64,15 @@ impl Knots {
         smooth
     }
 
+    /// The most by which the knots' colours differ in a channel.
+    pub fn color_spread(&self) -> f32 {
+        let spread = |c: usize| {
+            let channel = || self.colors.iter().map(|color| color[c]);
+            channel().fold(0.0, f32::max) - channel().fold(1.0, f32::min)
+        };
+        (0..3).map(spread).fold(0.0, f32::max)
+    }
+
     /// Two entries a knot, the number in single precision and what that lacks: the integrals from
     /// the first knot on of colour times absorption, and, in the last channel, of absorption, of
     /// the unit length.

@@ -16,6 +16,8 @@ pub struct DeviceTransfer {
     /// As `mean_medium` of `preintegrated.clh` has them; empty where no rule wants them.
     pub sums: Buffer<[f32; 4]>,
     pub knots: u32,
+    /// The most by which the knots' colours differ in a channel.
+    pub color_spread: f32,
 }
 
 impl DeviceTransfer {

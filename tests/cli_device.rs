@@ -251,6 +251,34 @@ fn the_layers_are_those_of_the_reference() {
 }
 
 #[test]
+fn precomputed_gradients_say_what_they_cost_and_are_worth() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    let render = |name: &str, flags: &str| {
+        let line = "render blob.nrrd --iso 0.4 --size 32 --stats a.json";
+        let output = place.run(&format!("{line} -o {name} {flags} {device}"));
+        assert!(output.status.success(), "{}", stderr(&output));
+        (stderr(&output), place.json("a.json"))
+    };
+    let (said, stats) = render("a.png", "--gradient precomputed --gradient-scale 3");
+    // Directions at the voxels 0, 3, … 21 and 23, three numbers of two bytes each.
+    assert_eq!(stats["memory"]["gradient_bytes"], 9 * 9 * 9 * 6);
+    assert!(stats["times_ms"]["gradient"].as_f64().unwrap() > 0.0);
+    assert_eq!(stats["scene"]["gradient-scale"], 3);
+    let note = said.lines().find(|l| l.starts_with("note: precomputed"));
+    let note = note.unwrap_or_else(|| panic!("{said}"));
+    for part in ["0.0 MB", "mean ", "p99 ", "places of strong gradient"] {
+        assert!(note.contains(part), "{note}");
+    }
+    // The controls: other gradients cost nothing and make another picture.
+    let (said, stats) = render("b.png", "--gradient central");
+    assert_eq!(stats["memory"]["gradient_bytes"], 0);
+    assert!(!said.contains("precomputed"), "{said}");
+    assert_ne!(pixels(&place, "a.png"), pixels(&place, "b.png"));
+}
+
+#[test]
 fn what_may_not_change_a_picture_does_not() {
     let Some((place, device)) = place() else {
         return;

@@ -8,11 +8,12 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod, Refine, Rgb,
-    TransferFunction, Traverse, Window,
+    ClipPlane, Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod,
+    Refine, Rgb, TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
+use glam::DVec3;
 
 const SIZE_PX: u32 = 72; // not a multiple of any work-group below but 8
 
@@ -225,6 +226,46 @@ fn skipping_never_changes_a_bit_under_any_quadrature() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn skipping_never_changes_a_bit_of_what_is_clipped() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = tubes();
+    let (center, _) = volume.bounding_sphere();
+    let plane = |normal: DVec3, beyond_mm: f64| {
+        let offset = normal.length() * beyond_mm - normal.dot(center);
+        ClipPlane::new(normal, offset).unwrap()
+    };
+    let planes = [
+        plane(DVec3::new(-0.4, 0.9, 0.3), 3.0),
+        plane(DVec3::new(0.1, 0.2, -1.0), 7.0),
+    ];
+    let octree = common::octree(&volume);
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    for picture in pictures(volume.range().max) {
+        let mut frame = |skip, traverse, planes: &[ClipPlane]| {
+            let mut scene = common::scene(&volume, 40, picture.clone());
+            scene.clip_planes = planes.to_vec();
+            scene.sampling.skip = skip;
+            scene.sampling.traverse = traverse;
+            renderer.render(&scene, Wanted::ALL).unwrap().frame
+        };
+        let whole = picture_bits(&frame(false, Traverse::Uniform, &planes));
+        for traverse in [
+            Traverse::Uniform,
+            Traverse::KdRestart,
+            Traverse::Hierarchical,
+        ] {
+            let skipped = picture_bits(&frame(true, traverse, &planes));
+            assert!(skipped == whole, "{} {traverse:?}", picture.mode());
+        }
+        // The control: the planes cut.
+        let unclipped = picture_bits(&frame(true, Traverse::Uniform, &[]));
+        assert!(unclipped != whole, "{}", picture.mode());
     }
 }
 

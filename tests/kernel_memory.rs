@@ -116,15 +116,20 @@ impl Under {
     }
 }
 
-const MODES: [&str; 13] = [
+const MODES: [&str; 18] = [
     "--mode iso --iso 40% --shading phong",
     "--mode iso --iso 40% --shading none --refine newton:4 --traverse kd-restart",
+    "--mode iso --iso 40% --clip-plane -0.3,1,0.2,-1 --clip-plane 1,0,0,-0.2",
     "--mode mip",
     "--mode minip --traverse uniform",
     "--mode mean",
     "--mode lmip --lmip-threshold 40%",
     "--mode dvr --shading blinn-phong",
     "--mode dvr --shading none --skip off",
+    "--mode iso --iso 40% --gradient precomputed --gradient-scale 3",
+    "--mode iso --iso 40% --gradient fourth-order",
+    "--mode dvr --shading phong --gradient precomputed --gradient-scale 8 --gradient-smooth 1",
+    "--mode mip --clip-plane -0.3,1,0.2,-1",
     "--mode dvr --quad riemann --traverse uniform",
     "--mode dvr --quad romberg --homogeneity 0.5",
     "--mode dvr --quad rk4 --homogeneity 0.5 --homogeneity-rule range --skip off",

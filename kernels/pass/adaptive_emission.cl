@@ -13,9 +13,11 @@
 // for all that lies behind. A ray ends once its transmission falls below least_transmission.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
-// with opacity in w; sums as mean_medium has them) and, per octree node, its CLASS_*. Writes color,
-// premultiplied linear light; with COUNTERS the times the medium was looked at and the nodes tested.
+// with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
+// node, its CLASS_*. Writes color, premultiplied linear light; with COUNTERS the times the medium was
+// looked at and the nodes tested.
 #include "lib/cells.clh"
+#include "lib/clip.clh"
 #include "lib/gather.clh"
 #include "lib/medium.clh"
 #include "lib/preintegrated.clh"
@@ -38,12 +40,14 @@
 
 // What a ray looks at in one cell, or in a monotone piece of it.
 typedef struct {
-    const global VOXEL *voxels;
     const global float *knot_values;
     const global float4 *knot_colors;
     const global float4 *knot_sums;
     VolumeGrid volume;
     EmissionCast cast;
+#if SHADED
+    GradientSource gradient;
+#endif
     Shading shading;
     float3 toward_eye;
     float3 near, way;  // index space: where the ray enters the cell, and its way through
@@ -63,7 +67,7 @@ static inline Medium lit_at(const Piece *piece, float u, Medium medium)
 {
 #if SHADED
     float3 p = clamp_to_domain(piece->volume, piece->near + (piece->from + piece->width * u) * piece->way);
-    return lit_medium(piece->voxels, piece->volume, piece->shading, piece->toward_eye, p, medium);
+    return lit_medium(piece->gradient, piece->volume, piece->shading, piece->toward_eye, p, medium);
 #else
     return medium;
 #endif
@@ -170,6 +174,10 @@ static inline void gather_piece(Gathered *gathered, const Piece *piece, float sh
 
 kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                               const global float *knot_values, const global float4 *knot_colors, const global float4 *knot_sums,
+                              const global float4 *clip_planes, uint clip_count,
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+                              const global short *directions, uint4 direction_grid,
+#endif
                               VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
                               global float4 *color
 #if COUNTERS
@@ -185,18 +193,26 @@ kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *no
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     Gathered gathered = gather_start();
     uint sample_count = 0u;
     uint node_count = 0u;
 
     if (interval.enter <= interval.exit) {
         Piece piece;
-        piece.voxels = voxels;
         piece.knot_values = knot_values;
         piece.knot_colors = knot_colors;
         piece.knot_sums = knot_sums;
         piece.volume = volume;
         piece.cast = cast;
+#if SHADED
+#if GRADIENT == GRADIENT_PRECOMPUTED
+        piece.gradient.directions = directions;
+        piece.gradient.grid = direction_grid;
+#else
+        piece.gradient.voxels = voxels;
+#endif
+#endif
         piece.shading = shading;
         piece.toward_eye = -ray.dir_world;
         float share_per_mm = 0.5f * cast.bound / fmax(interval.exit - interval.enter, FLT_MIN);

@@ -9,8 +9,10 @@
 // least_transmission times the brightest colour.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
-// with opacity in w; sums as mean_medium has them) and, per octree node, its CLASS_* and average.
-// Writes color, premultiplied linear light; with COUNTERS the samples taken and the nodes tested.
+// with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
+// node, its CLASS_* and average. Writes color, premultiplied linear light; with COUNTERS the samples
+// taken and the nodes tested.
+#include "lib/clip.clh"
 #include "lib/gather.clh"
 #include "lib/medium.clh"
 #include "lib/octree.clh"
@@ -27,6 +29,9 @@ typedef struct {
     VolumeGrid volume;
     Lattice lattice;
     EmissionCast cast;
+#if SHADED
+    GradientSource gradient;
+#endif
     Shading shading;
     float3 toward_eye;
 } Sight;
@@ -51,7 +56,7 @@ static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near,
     Medium mean = mean_medium(sight.knot_values, sight.knot_colors, sight.knot_sums, sight.cast, first, last);
 #if SHADED
     float3 middle = lattice_point(sight.volume, sight.lattice, t_near + 0.5f * length_mm);
-    mean = lit_medium(sight.voxels, sight.volume, sight.shading, sight.toward_eye, middle, mean);
+    mean = lit_medium(sight.gradient, sight.volume, sight.shading, sight.toward_eye, middle, mean);
 #endif
     return panel_midpoint(mean, length_mm);
 }
@@ -61,7 +66,7 @@ static inline Medium medium_at(Sight sight, float t)
     float3 p = lattice_point(sight.volume, sight.lattice, t);
     Medium medium = medium_of(sight.knot_values, sight.knot_colors, sight.cast, field_at(sight.voxels, sight.volume, p));
 #if SHADED
-    medium = lit_medium(sight.voxels, sight.volume, sight.shading, sight.toward_eye, p, medium);
+    medium = lit_medium(sight.gradient, sight.volume, sight.shading, sight.toward_eye, p, medium);
 #endif
     return medium;
 }
@@ -121,6 +126,10 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
 #if HOMOGENEOUS
                           const global float *node_average,
 #endif
+                          const global float4 *clip_planes, uint clip_count,
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+                          const global short *directions, uint4 direction_grid,
+#endif
                           VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
                           global float4 *color
 #if COUNTERS
@@ -136,6 +145,7 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     Gathered gathered = gather_start();
     uint sample_count = 0u;
     uint node_count = 0u;
@@ -152,6 +162,14 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
         sight.volume = volume;
         sight.lattice = lattice;
         sight.cast = cast;
+#if SHADED
+#if GRADIENT == GRADIENT_PRECOMPUTED
+        sight.gradient.directions = directions;
+        sight.gradient.grid = direction_grid;
+#else
+        sight.gradient.voxels = voxels;
+#endif
+#endif
         sight.shading = shading;
         sight.toward_eye = -ray.dir_world;
         Walk walk = walk_start(volume, cast.traverse);

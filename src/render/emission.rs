@@ -46,6 +46,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         }
         None => None,
     };
+    let shaded_by = phong.map(|_| view.gradient);
     let cast = emission_cast(view, emission, &on_device);
     let shading = twins::shading(Rgb::BLACK, phong, view.scene.light);
     let mut color = run.plane("colour plane")?;
@@ -54,8 +55,9 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         cast_emission(
             run,
             quadrature.method,
-            phong.is_some(),
+            shaded_by,
             view.uploaded,
+            view.clip,
             &node_class,
             averages.as_ref(),
             &on_device,
@@ -68,8 +70,9 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
     } else {
         adaptive_emission(
             run,
-            phong.is_some(),
+            shaded_by,
             view.uploaded,
+            view.clip,
             &node_class,
             &on_device,
             &view.rays,

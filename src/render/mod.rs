@@ -2,7 +2,10 @@
 
 mod abi;
 mod classify;
+mod clip;
+mod directions;
 mod emission;
+mod gradient;
 mod homogeneity;
 mod medium;
 mod passes;
@@ -15,6 +18,8 @@ mod reach;
 mod twins;
 mod variant;
 
+pub use directions::{AngleError, Directions};
+pub use gradient::GradientFigures;
 pub use pipeline::{Options, Renderer, Rendering};
 pub use twins::struct_layouts;
 pub use variant::Variant;

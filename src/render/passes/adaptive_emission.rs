@@ -4,15 +4,18 @@ use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 
-use super::{Counters, DeviceTransfer, DeviceVolume, Run, levels, switch, voxels};
+use super::{
+    Counters, DeviceClip, DeviceGradient, DeviceTransfer, DeviceVolume, Run, levels, switch, voxels,
+};
 
 /// Emission and absorption along each ray within an error bound: `color`, linear light,
 /// premultiplied.
 #[allow(clippy::too_many_arguments)]
 pub fn adaptive_emission(
     run: &mut Run,
-    shaded: bool,
+    shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -23,9 +26,10 @@ pub fn adaptive_emission(
 ) -> Result<()> {
     let with_counters = counters.is_some();
     let variant = run.variant;
-    let defines = variant
-        .defines()
-        .with("SHADED", switch(shaded))
+    let gradient = shaded_by.unwrap_or(DeviceGradient::none());
+    let defines = gradient
+        .define(variant.defines())
+        .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run
         .built
@@ -37,12 +41,17 @@ pub fn adaptive_emission(
                 input::<f32>("knot_values"),
                 input::<[f32; 4]>("knot_colors"),
                 input::<[f32; 4]>("knot_sums"),
+                DeviceClip::planes_parameter(),
+                DeviceClip::count_parameter(),
+            ];
+            signature.extend(gradient.parameters());
+            signature.extend([
                 value::<VolumeGrid>("volume"),
                 value::<RayGrid>("rays"),
                 value::<EmissionCast>("cast"),
                 value::<Shading>("shading"),
                 output::<[f32; 4]>("color"),
-            ];
+            ]);
             signature.extend(Counters::parameters(with_counters));
             signature
         })?;
@@ -54,6 +63,10 @@ pub fn adaptive_emission(
         .input(&transfer.values)
         .input(&transfer.colors)
         .input(&transfer.sums)
+        .input(&clip.planes)
+        .value(&clip.count);
+    let launch = gradient
+        .give(launch)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -6,7 +6,7 @@ use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 use crate::render::variant::quadrature_constant;
 use crate::scene::QuadratureMethod;
 
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceGradient, DeviceVolume, Run, levels, switch, voxels};
 
 /// A transfer function on the device, knots ascending in stored units.
 pub struct DeviceTransfer {
@@ -33,8 +33,9 @@ impl DeviceTransfer {
 pub fn cast_emission(
     run: &mut Run,
     method: QuadratureMethod,
-    shaded: bool,
+    shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
@@ -47,11 +48,12 @@ pub fn cast_emission(
     let with_counters = counters.is_some();
     let variant = run.variant;
     let integrates = method == QuadratureMethod::Preintegrated;
-    let defines = variant
-        .defines()
+    let gradient = shaded_by.unwrap_or(DeviceGradient::none());
+    let defines = gradient
+        .define(variant.defines())
         .with("QUADRATURE", format!("{}u", quadrature_constant(method)))
         .with("HOMOGENEOUS", switch(node_average.is_some()))
-        .with("SHADED", switch(shaded))
+        .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_emission", defines, || {
         let mut signature = vec![
@@ -63,6 +65,11 @@ pub fn cast_emission(
         ];
         signature.extend(integrates.then(|| input::<[f32; 4]>("knot_sums")));
         signature.extend(node_average.map(|_| input::<f32>("node_average")));
+        signature.extend([
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
+        ]);
+        signature.extend(gradient.parameters());
         signature.extend([
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
@@ -86,7 +93,9 @@ pub fn cast_emission(
     if let Some(node_average) = node_average {
         launch = launch.input(node_average);
     }
-    let launch = launch
+    let launch = launch.input(&clip.planes).value(&clip.count);
+    let launch = gradient
+        .give(launch)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -22,6 +22,8 @@ use crate::gpu::{
 };
 
 use super::abi::VolumeGrid;
+use super::clip::DeviceClip;
+use super::gradient::DeviceGradient;
 use super::variant::{Variant, voxel_cl_name};
 
 pub use adaptive_emission::adaptive_emission;

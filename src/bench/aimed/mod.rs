@@ -16,7 +16,9 @@ use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{FirstCrossing, RayCaster};
-use crate::scene::{Camera, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone};
+use crate::scene::{
+    Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
+};
 
 use super::{Judge, Met, Verdict};
 
@@ -231,8 +233,10 @@ fn scene_of(target: &Target) -> Result<Scene> {
             color: Rgb::BLACK,
             phong: None,
         },
+        clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     })
 }

@@ -239,7 +239,7 @@ fn touching_vessels() {
         "isosurface::touching_vessels",
         "touching-vessels",
         truth,
-        &[TEXTURE_WEIGHTS],
+        &[NO_ROOT],
     );
 }
 
@@ -373,7 +373,7 @@ fn zero_gradient() {
         lines
     }
     let no_normal = kernel(
-        "lib/field.clh",
+        "lib/gradient.clh",
         &[("return fallback;", "return (float3)(0.0f);")],
     );
     judge(
@@ -401,7 +401,7 @@ fn mirrored_normals() {
         lines
     }
     let index_space = kernel(
-        "lib/field.clh",
+        "lib/gradient.clh",
         &[("volume.gradient_row_x.x * covector.x", "covector.x")],
     );
     judge(

@@ -16,7 +16,9 @@ use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{FirstCrossing, RayCaster};
-use crate::scene::{Camera, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone};
+use crate::scene::{
+    Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
+};
 
 use super::{Judge, Met, Verdict};
 
@@ -39,7 +41,7 @@ pub struct Tally {
     pub borderline: u64,
     /// Answers that are not proven.
     pub undecided: u64,
-    /// Answers that are proven and yet not the reference's.
+    /// Answers that are proven and yet not the reference's, where that is certain of its own.
     pub wrongly_proven: u64,
     /// Of answers that agree, in voxels.
     pub most_apart: f64,
@@ -203,7 +205,9 @@ fn judge_one(
         rays: 1,
         hits: u64::from(hit),
         undecided: u64::from(proven.is_none()),
-        wrongly_proven: u64::from(proven.is_some_and(|proven| proven != hit)),
+        wrongly_proven: u64::from(
+            proven.is_some_and(|proven| proven != hit) && judge.is_certain(ray, truth),
+        ),
         ..Tally::default()
     };
     match verdict {
@@ -231,8 +235,10 @@ fn scene_of(target: &Target) -> Result<Scene> {
             color: Rgb::BLACK,
             phong: None,
         },
+        clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     })
 }

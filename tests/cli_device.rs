@@ -122,7 +122,7 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
     };
     let names = |v: &Value| {
         v.as_array()
-            .is_some_and(|a| a.len() == 13 && a.iter().all(text))
+            .is_some_and(|a| a.len() == 14 && a.iter().all(text))
     };
     type Check<'a> = &'a dyn Fn(&Value) -> bool;
     let checks: [(&str, Check); 28] = [
@@ -212,8 +212,20 @@ fn the_layers_are_those_of_the_reference() {
         return;
     };
     let names = [
-        "R", "G", "B", "A", "depth.Z", "normal.X", "normal.Y", "normal.Z", "value.V", "steps.N",
-        "nodes.N", "cast.V", "kind.V",
+        "R",
+        "G",
+        "B",
+        "A",
+        "depth.Z",
+        "normal.X",
+        "normal.Y",
+        "normal.Z",
+        "value.V",
+        "steps.N",
+        "nodes.N",
+        "cast.V",
+        "kind.V",
+        "certificate.V",
     ];
     for mode in MODES {
         let line = format!("render blob.nrrd --mode {mode} --size 32 --azimuth 20 --aov all");

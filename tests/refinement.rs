@@ -7,7 +7,8 @@ use angioray::extent::ImageSize;
 use angioray::frame::Wanted;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, Scene, Tone,
+    Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, SamplingMethod,
+    Scene, Tone,
 };
 use angioray::volume::Volume;
 use common::volume_of;
@@ -69,6 +70,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         },
         clip_planes: Vec::new(),
         sampling: Sampling {
+            method: SamplingMethod::Fixed,
             step_voxels: STEP_VOXELS,
             ..Sampling::default()
         },

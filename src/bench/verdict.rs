@@ -133,7 +133,8 @@ impl<'a> Judge<'a> {
             iso: 0.0,
         };
         // The nearest answers before and behind, nothing being behind all.
-        let (mut before, mut behind): (Option<(Off, Met)>, Option<(Off, Met)>) = (None, None);
+        let mut before: Option<(Off, Met)> = None;
+        let mut behind: Option<(Off, Met)> = None;
         // Whether near rays pass the truth's place.
         let mut passes = false;
         for by in self.moves(ray) {

@@ -323,7 +323,13 @@ fn without_border(volume: &Volume) -> Volume {
         panic!("made for u8");
     };
     let mut moved = vec![0u8; voxels.len()];
-    let inward = |c: usize, n: usize| if c % 8 == 0 && c + 1 < n { c + 1 } else { c };
+    let inward = |c: usize, n: usize| {
+        if c.is_multiple_of(8) && c + 1 < n {
+            c + 1
+        } else {
+            c
+        }
+    };
     for z in 0..nz {
         for y in 0..ny {
             for x in 0..nx {

@@ -166,22 +166,28 @@ fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// Every way of giving each switch one of its values.
+/// Each value of each switch, once with all others at their first value and once at their last: so
+/// that every branch is built, whether it stands in another's or beside it.
 fn combinations(switches: &[(String, Vec<String>)]) -> Vec<Vec<(String, String)>> {
-    switches
-        .iter()
-        .fold(vec![Vec::new()], |before, (name, values)| {
-            before
-                .iter()
-                .flat_map(|chosen| {
-                    values.iter().map(move |value| {
-                        let mut chosen = chosen.clone();
-                        chosen.push((name.clone(), value.clone()));
-                        chosen
-                    })
-                })
-                .collect()
-        })
+    let all = |value: fn(&[String]) -> Option<&String>| -> Vec<(String, String)> {
+        let pair = |(name, values): &(String, Vec<String>)| {
+            let value = value(values).expect("a switch has values");
+            (name.clone(), value.clone())
+        };
+        switches.iter().map(pair).collect()
+    };
+    let mut found = BTreeSet::new();
+    for base in [all(<[String]>::first), all(<[String]>::last)] {
+        found.insert(base.clone());
+        for (n, (_, values)) in switches.iter().enumerate() {
+            for value in values {
+                let mut chosen = base.clone();
+                chosen[n].1 = value.clone();
+                found.insert(chosen);
+            }
+        }
+    }
+    found.into_iter().collect()
 }
 
 fn variant(voxel: VoxelType, filter: Filter, leaf: u32, wide_index: bool) -> String {
@@ -196,7 +202,7 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32, wide_index: bool) -> Str
     .options()
 }
 
-/// Every combination of switches with both filters; with all outputs, also every voxel type, a leaf
+/// The [`combinations`] of switches with both filters; with all outputs, also every voxel type, a leaf
 /// that is no power of two, and indices of 64 bits.
 fn builds(path: &str) -> Vec<Build> {
     let text = flatten(path).unwrap();
@@ -290,6 +296,23 @@ fn the_switches_are_read_from_the_kernels() {
     assert_eq!(of("pass/surface_normal.cl"), named(&[("GRADIENT", 4)]));
     assert_eq!(of("pass/shade_surface.cl"), named(&[("SHADED", 2)]));
     assert_eq!(of("pass/tone_curve.cl"), named(&[]));
+}
+
+#[test]
+fn every_value_is_built_with_others_off_and_on() {
+    let switch = |name: &str, values: &[&str]| {
+        let values = values.iter().map(|&value| value.to_owned()).collect();
+        (name.to_owned(), values)
+    };
+    let switches = [switch("A", &["0", "1"]), switch("B", &["2", "3", "4"])];
+    let built: Vec<String> = combinations(&switches)
+        .iter()
+        .map(|chosen| format!("{}{}", chosen[0].1, chosen[1].1))
+        .collect();
+    assert_eq!(built, ["02", "03", "04", "12", "13", "14"]);
+    let three = [&switches[..], &[switch("C", &["0", "1"])]].concat();
+    assert_eq!(combinations(&three).len(), 10);
+    assert_eq!(combinations(&[]).len(), 1);
 }
 
 #[test]

@@ -6,6 +6,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
+use angioray::bench::aimed::{rays, target};
+use angioray::frame::Kind;
+use angioray::octree::{Leaf, Octree};
+use angioray::progress::Silent;
+use angioray::render::RayCaster;
+
+/// Says to a process of this program that oclgrind watches it.
+const UNDER: &str = "ANGIORAY_TEST_UNDER_OCLGRIND";
+
 /// oclgrind's OpenCL driver, found beside the program of its package.
 fn driver() -> Option<PathBuf> {
     let programs = std::env::split_paths(&std::env::var_os("PATH")?).collect::<Vec<_>>();
@@ -74,10 +83,25 @@ impl Under {
             .arg(volume)
             .args(arguments.split_whitespace())
             .arg("-o")
-            .arg(self.path(name))
+            .arg(self.path(name));
+        self.run(command, &log)
+    }
+
+    /// Runs the test `name` of this program and gives what oclgrind reported.
+    fn test(&self, name: &str) -> String {
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        command
+            .args([name, "--exact", "--nocapture", "--test-threads=1"])
+            .env(UNDER, "1")
+            .env("ANGIORAY_TEST_DEVICE", "");
+        self.run(command, &self.path(&format!("{name}.log")))
+    }
+
+    fn run(&self, mut command: Command, log: &Path) -> String {
+        command
             .env("OCL_ICD_VENDORS", self.path("vendors"))
             .env_remove("OCL_ICD_FILENAMES")
-            .env("OCLGRIND_LOG", &log)
+            .env("OCLGRIND_LOG", log)
             .env("OCLGRIND_DATA_RACES", "1")
             .env("OCLGRIND_CHECK_API", "1")
             // Optimised code of inlined structs holds an intrinsic that oclgrind 21.10 does not know.
@@ -89,19 +113,19 @@ impl Under {
         }
         let output = command.output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{arguments}: {said}");
+        assert!(output.status.success(), "{command:?}: {said}");
         assert!(
             said.contains("Oclgrind"),
-            "{arguments} ran elsewhere: {said}"
+            "{command:?} ran elsewhere: {said}"
         );
-        std::fs::read_to_string(&log).unwrap_or_default()
+        std::fs::read_to_string(log).unwrap_or_default()
     }
 
     /// A copy of the kernels with one line changed.
     fn with_broken(mut self, file: &str, line: &str, broken: &str) -> Self {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
         let copy = self.path("kernels");
-        for folder in ["lib", "pass"] {
+        for folder in ["lib", "pass", "test"] {
             std::fs::create_dir_all(copy.join(folder)).unwrap();
             for entry in std::fs::read_dir(source.join(folder)).unwrap() {
                 let entry = entry.unwrap();
@@ -219,4 +243,60 @@ fn a_write_by_two_work_items_is_reported() {
     let volume = under.phantom("noise --size 3x5x7");
     let report = under.render(&volume, SMALL, "broken.exr");
     assert!(report.contains("data race"), "{report}");
+}
+
+/// In a process of its own: rays aimed at volumes of every type of voxel that they are made of, and
+/// rays of numbers that are none.
+#[test]
+fn aimed_rays_under_oclgrind() {
+    if std::env::var_os(UNDER).is_none() {
+        return;
+    }
+    let device = common::device().unwrap();
+    eprintln!("on {}", device.info().platform);
+    let hostile = [
+        0.0,
+        -0.0,
+        1.0,
+        3.0,
+        -1e-20,
+        1e30,
+        f32::MAX,
+        f32::INFINITY,
+        f32::NAN,
+    ];
+    let mut caster = RayCaster::new(&device);
+    let mut hits = 0;
+    for n in 0..5 {
+        let target = target(7, n).unwrap();
+        let octree = Octree::build(&target.volume, Leaf::new(4).unwrap(), &Silent).unwrap();
+        let aimed = rays(&target, 7 + u64::from(n), 100);
+        let mut given: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
+        given.extend((0..81).map(|i| {
+            let at = |k: usize| hostile[(i * k + i / 9 + k) % hostile.len()];
+            ([at(1), at(2), at(5)], [at(3), at(7), at(11)])
+        }));
+        let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &given);
+        hits += found
+            .unwrap()
+            .iter()
+            .filter(|found| found.kind != Kind::Nothing)
+            .count();
+    }
+    assert!(hits > 50, "{hits}");
+}
+
+#[test]
+fn aimed_rays_stay_within_their_buffers() {
+    let Some(under) = Under::oclgrind() else {
+        return;
+    };
+    let report = under.test("aimed_rays_under_oclgrind");
+    assert!(report.is_empty(), "{report}");
+    let under = under.with_broken("test/aimed_rays.cl", "    hit[i] =", "    hit[i + 1u] =");
+    let report = under.test("aimed_rays_under_oclgrind");
+    assert!(
+        report.contains("Invalid write of size 4 at global memory"),
+        "{report}"
+    );
 }

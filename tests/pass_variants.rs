@@ -1,7 +1,6 @@
 //! The passes build and take the arguments that their Rust functions give: for every voxel type,
-//! filter and picture, with no layers and counters and with both, and with both for every gradient;
-//! for `u8` and the linear filter also with either alone, and with an octree leaf that is no power of
-//! two. The 64-bit index, which only volumes of more than 2^32 voxels select, is left to
+//! filter and picture with all layers and counters; for `u8` also with neither, with every gradient,
+//! and, under the linear filter, with either alone and with an octree leaf that is no power of two. The 64-bit index, which only volumes of more than 2^32 voxels select, is left to
 //! `kernel_lint`.
 
 mod common;
@@ -87,18 +86,23 @@ fn emissions() -> Vec<Picture> {
     emissions
 }
 
+/// Other gradients than central differences.
+fn gradients() -> Vec<Gradient> {
+    vec![
+        Gradient::Forward,
+        Gradient::FourthOrder,
+        Gradient::Precomputed(Precomputed::default()),
+    ]
+}
+
 /// Every picture with central differences for each of the outputs; those that shade with the other
 /// gradients too, for the last of them.
 fn views<'a>(
     pictures: &[Picture],
+    gradients: &[Gradient],
     outputs: &'a [Wanted],
 ) -> Vec<(Picture, Gradient, &'a [Wanted])> {
     let last = &outputs[outputs.len() - 1..];
-    let others = [
-        Gradient::Forward,
-        Gradient::FourthOrder,
-        Gradient::Precomputed(Precomputed::default()),
-    ];
     let mut all = Vec::new();
     for picture in pictures {
         let is_shaded = match picture {
@@ -108,7 +112,8 @@ fn views<'a>(
         };
         all.push((picture.clone(), Gradient::Central, outputs));
         if is_shaded {
-            all.extend(others.map(|gradient| (picture.clone(), gradient, last)));
+            let of = |&gradient| (picture.clone(), gradient, last);
+            all.extend(gradients.iter().map(of));
         }
     }
     all
@@ -132,6 +137,7 @@ fn counters_alone() -> Wanted {
 /// counts the launches.
 fn launches<T>(
     pictures: &[Picture],
+    gradients: &[Gradient],
     leaf: Leaf,
     filters: &[Filter],
     outputs: &[Wanted],
@@ -147,7 +153,7 @@ where
     let octree = Octree::build(&volume, leaf, &Silent).unwrap();
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let mut launches = 0;
-    for (picture, gradient, outputs) in views(pictures, outputs) {
+    for (picture, gradient, outputs) in views(pictures, gradients, outputs) {
         for &filter in filters {
             for &wanted in outputs {
                 let mut scene = common::scene(&volume, 8, picture.clone());
@@ -177,47 +183,61 @@ where
 
 const FILTERS: [Filter; 2] = [Filter::Linear, Filter::Nearest];
 
-/// Both filters, with no layers and counters, and with all.
+fn sum(x: f64, y: f64, z: f64) -> u8 {
+    (x + y + z) as u8
+}
+
+/// Both filters, with all layers and counters: what the type of a voxel may change.
 fn of_voxel<T>(voxel: impl Fn(f64, f64, f64) -> T) -> usize
 where
     Voxels: From<Vec<T>>,
 {
-    let outputs = [Wanted::default(), Wanted::ALL];
-    launches(&pictures(), Leaf::default(), &FILTERS, &outputs, voxel)
+    let outputs = [Wanted::ALL];
+    launches(&pictures(), &[], Leaf::default(), &FILTERS, &outputs, voxel)
 }
 
 #[test]
 fn u8_variants_build() {
-    assert!(of_voxel(|x, y, z| (x + y + z) as u8) > 0);
+    let outputs = [Wanted::default(), Wanted::ALL];
+    let leaf = Leaf::default();
+    assert!(launches(&pictures(), &gradients(), leaf, &FILTERS, &outputs, sum) > 0);
 }
 
 #[test]
 fn u8_variants_build_with_either_output_alone() {
     let outputs = [layers_alone(), counters_alone()];
-    let sum = |x, y, z| (x + y + z) as u8;
+    let (leaf, linear) = (Leaf::default(), [Filter::Linear]);
+    assert!(launches(&pictures(), &[], leaf, &linear, &outputs, sum) > 0);
+}
+
+#[test]
+fn u8_variants_build_with_a_leaf_of_five_cells() {
+    let (leaf, linear) = (Leaf::new(5).unwrap(), [Filter::Linear]);
+    assert!(launches(&pictures(), &[], leaf, &linear, &[Wanted::ALL], sum) > 0);
+}
+
+#[test]
+fn u8_variants_of_every_quadrature_build() {
+    let leaf = Leaf::default();
+    let linear = [Filter::Linear];
     assert!(
         launches(
-            &pictures(),
-            Leaf::default(),
-            &[Filter::Linear],
-            &outputs,
+            &emissions(),
+            &gradients(),
+            leaf,
+            &linear,
+            &[Wanted::ALL],
             sum
         ) > 0
     );
 }
 
 #[test]
-fn u8_variants_build_with_a_leaf_of_five_cells() {
-    let leaf = Leaf::new(5).unwrap();
-    let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(&pictures(), leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
-}
-
-#[test]
-fn u8_variants_of_every_quadrature_build() {
-    let outputs = [Wanted::default(), Wanted::ALL];
-    let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(&emissions(), Leaf::default(), &FILTERS, &outputs, sum) > 0);
+fn u8_variants_of_every_quadrature_build_with_nearest_voxels() {
+    let leaf = Leaf::default();
+    let nearest = [Filter::Nearest];
+    let outputs = [Wanted::default()];
+    assert!(launches(&emissions(), &[], leaf, &nearest, &outputs, sum) > 0);
 }
 
 #[test]

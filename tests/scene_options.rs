@@ -416,3 +416,80 @@ fn gradients_belong_to_normals_and_their_numbers_to_precomputed_ones() {
     let stray = flags(&["--iso", "1"]).over(file("mode = 'mip'\ngradient = 'forward'"));
     assert!(stray.checked().is_err());
 }
+
+/// Each in one sentence that names both; what is right beside it is taken.
+#[test]
+fn what_dvr_averages_and_sums_belongs_to_it_alone() {
+    for (wrong, reason) in [
+        (
+            "mode = 'iso'\nquad = 'rk4'",
+            "'quad' does not go with mode 'iso'",
+        ),
+        (
+            "mode = 'mip'\nquad = 'adaptive'",
+            "'quad' does not go with mode 'mip'",
+        ),
+        ("quad = 'simpson'", "only dvr sums light along the ray"),
+        (
+            "mode = 'dvr'\nquad = 'simpson:1e-3'",
+            ":BOUND is adaptive's alone",
+        ),
+        (
+            "mode = 'dvr'\nquad = 'adaptive:1'",
+            "an error from 1e-5 to 0.1",
+        ),
+        (
+            "mode = 'mean'\nhomogeneity = 0.1",
+            "'homogeneity' does not go with mode 'mean'",
+        ),
+        (
+            "mode = 'dvr'\nhomogeneity = 0.1\nshading = 'phong'",
+            "'homogeneity' does not go with shading",
+        ),
+        (
+            "mode = 'dvr'\nhomogeneity = 0.1\nquad = 'adaptive'",
+            "'homogeneity' does not go with quad 'adaptive'",
+        ),
+        (
+            "mode = 'dvr'\nhomogeneity-rule = 'range'",
+            "no effect without 'homogeneity'",
+        ),
+        ("mode = 'dvr'\nhomogeneity = 0", "above 0 and at most 1"),
+        ("mode = 'dvr'\nhomogeneity = 1.5", "above 0 and at most 1"),
+        ("mode = 'dvr'\nhomogeneity-rule = 'paper'", "optical, range"),
+        ("clip-plane = [[0, 0, 0, 1]]", "has no direction"),
+    ] {
+        let said = refusal(wrong);
+        assert!(said.contains(reason), "{wrong}: {said}");
+        assert!(!said.contains('\n'), "{wrong}: {said}");
+    }
+    for right in [
+        "mode = 'dvr'\nquad = 'adaptive:1e-3'\nshading = 'phong'",
+        "mode = 'dvr'\nhomogeneity = 1\nquad = 'preintegrated'",
+        "mode = 'dvr'\nhomogeneity = 0.1\nhomogeneity-rule = 'range'",
+    ] {
+        assert!(file(right).checked().is_ok(), "{right}");
+    }
+    // Of a flag and the file, the flag wins.
+    let quad = |line: &[&str], text: &str| {
+        let options = flags(line).over(file(text)).checked().unwrap();
+        (options.picture.quad, options.picture.homogeneity.is_some())
+    };
+    let averaged = "mode = 'dvr'\nhomogeneity = 0.1";
+    let adaptive = "adaptive:0.001".parse().ok();
+    assert_eq!(quad(&["--quad", "adaptive"], averaged), (adaptive, false));
+    let (kept, is_averaged) = quad(&["--homogeneity", "0.1"], "mode = 'dvr'\nquad = 'adaptive'");
+    assert!(kept.is_none() && is_averaged);
+}
+
+#[test]
+fn there_are_64_clip_planes_at_most() {
+    let planes = |count: usize| {
+        let plane = ["--clip-plane", "0,0,1,5"];
+        flags(&plane.repeat(count)).checked()
+    };
+    assert!(planes(64).is_ok());
+    let error = planes(65).map(|_| ()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(error.to_string(), "65 clip planes: there may be at most 64");
+}

@@ -2,7 +2,46 @@ use glam::DVec3;
 
 use super::HardScene;
 use super::view::{OBLIQUE, View};
+use crate::scene::{Quadrature, QuadratureMethod};
 use crate::volume::Volume;
+
+/// The error that the adaptive rule is held to.
+const BOUND: f64 = 1e-4;
+/// Rules of order 2 at least, for which half a voxel is fine enough where a medium changes.
+const SMOOTH: &[QuadratureMethod] = &[
+    QuadratureMethod::Midpoint,
+    QuadratureMethod::Simpson,
+    QuadratureMethod::Romberg,
+    QuadratureMethod::Rk4,
+    QuadratureMethod::Preintegrated,
+    QuadratureMethod::Adaptive,
+];
+/// Rules that lose nothing between two samples.
+const KEEPING: &[QuadratureMethod] = &[QuadratureMethod::Preintegrated, QuadratureMethod::Adaptive];
+
+/// The same picture under each of the rules.
+fn under(
+    rules: &[QuadratureMethod],
+    view: &View,
+    what: &str,
+    unit_length_mm: f64,
+    points: &[(f64, f64)],
+) -> Vec<HardScene> {
+    let scene = |&method: &QuadratureMethod| {
+        let bound = match method {
+            QuadratureMethod::Adaptive => BOUND,
+            _ => 0.0,
+        };
+        let quadrature = Quadrature { method, bound };
+        let what = match what {
+            "" => method.to_string(),
+            what => format!("{what}-{method}"),
+        };
+        let view = view.clone().with(&format!("quad = \"{quadrature}\""));
+        view.dvr(&what, unit_length_mm, points)
+    };
+    rules.iter().map(scene).collect()
+}
 
 pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
     let (center, radius_mm) = volume.bounding_sphere();
@@ -17,27 +56,32 @@ pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
         "homogeneous" => {
             let eye = center + OBLIQUE.normalize() * (1.05 * radius_mm);
             let wide = View::perspective("wide", eye, center, 100.0).size(31, 31);
-            vec![wide.dvr("", 2.0, medium), whole.dvr("whole", 2.0, medium)]
+            let mut scenes = under(&QuadratureMethod::ALL, &wide, "", 2.0, medium);
+            scenes.push(whole.dvr("whole", 2.0, medium));
+            scenes
         }
-        "slab" => vec![along_x.dvr("", 1.0, &[(0.0, 0.0), (1.0, 0.3)])],
-        "ramp" => vec![along_x.dvr("", 40.0, &[(0.0, 0.0), (64.0, 0.95)])],
-        "gaussian" => vec![whole.dvr("whole", 1.0, &[(0.1, 0.0), (1.0, 0.3)])],
-        "tf-spike" => vec![along_x.dvr("", 1.0, &[(128.0, 0.0), (128.05, 0.9), (128.1, 0.0)])],
-        "tf-stairs" => vec![
-            whole.dvr("jump", 4.0, &[(120.0, 0.0), (120.0, 0.3)]),
-            whole.dvr(
-                "stairs",
-                4.0,
-                &[
-                    (60.0, 0.0),
-                    (60.0, 0.1),
-                    (120.0, 0.1),
-                    (120.0, 0.3),
-                    (180.0, 0.3),
-                    (180.0, 0.05),
-                ],
-            ),
-        ],
+        "slab" => under(SMOOTH, &along_x, "", 1.0, &[(0.0, 0.0), (1.0, 0.3)]),
+        "ramp" => under(SMOOTH, &along_x, "", 40.0, &[(0.0, 0.0), (64.0, 0.95)]),
+        "gaussian" => under(SMOOTH, &whole, "whole", 1.0, &[(0.1, 0.0), (1.0, 0.3)]),
+        "tf-spike" => {
+            let spike = &[(128.0, 0.0), (128.05, 0.9), (128.1, 0.0)];
+            under(KEEPING, &along_x, "", 1.0, spike)
+        }
+        "tf-stairs" => {
+            let adaptive = &[QuadratureMethod::Adaptive];
+            let jump = &[(120.0, 0.0), (120.0, 0.3)];
+            let stairs = &[
+                (60.0, 0.0),
+                (60.0, 0.1),
+                (120.0, 0.1),
+                (120.0, 0.3),
+                (180.0, 0.3),
+                (180.0, 0.05),
+            ];
+            let mut scenes = under(adaptive, &whole, "jump", 4.0, jump);
+            scenes.extend(under(adaptive, &whole, "stairs", 4.0, stairs));
+            scenes
+        }
         "tf-outside" => vec![
             whole.dvr("transparent", 1.0, &[(0.0, 0.0), (255.0, 0.0)]),
             whole.dvr("clear-point", 1.0, &[(50.0, 0.0)]),
@@ -45,17 +89,27 @@ pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
             whole.dvr("below", 4.0, &[(-2e6, 1.0), (-1e6, 0.2)]),
             whole.dvr("opaque", 1.0, &[(0.0, 1.0), (255.0, 1.0)]),
         ],
-        "opaque-step" => vec![whole.dvr("", 1e-6, &[(50.0, 1.0)])],
-        "faint-4096" => vec![along_x.dvr("", 1.0, &[(0.0, 0.0), (200.0, 2e-6)])],
-        "thin-bright-sheet" => vec![
-            along_x.dvr("", 1.0, &[(200.0, 0.0), (255.0, 0.5)]),
-            whole.dvr("whole", 1.0, &[(200.0, 0.0), (255.0, 0.5)]),
-        ],
+        "opaque-step" => {
+            let opaque = &[(50.0, 1.0)];
+            under(&QuadratureMethod::ALL, &whole, "whole", 1e-6, opaque)
+        }
+        "faint-4096" => {
+            let faint = &[(0.0, 0.0), (200.0, 2e-6)];
+            under(&QuadratureMethod::ALL, &along_x, "", 1.0, faint)
+        }
+        "thin-bright-sheet" => {
+            let adaptive = &[QuadratureMethod::Adaptive];
+            let sheet = &[(200.0, 0.0), (255.0, 0.5)];
+            let mut scenes = under(adaptive, &along_x, "", 1.0, sheet);
+            scenes.extend(under(adaptive, &whole, "whole", 1.0, sheet));
+            scenes
+        }
         "false-homogeneous" => {
             let points: &[(f64, f64)] = &[(100.9, 0.0), (101.1, 0.5)];
+            let averaged = |view: View| view.with("homogeneity = 0.001");
             vec![
-                along_x.dvr("", 1.0, points),
-                whole.dvr("whole", 1.0, points),
+                averaged(along_x).dvr("", 1.0, points),
+                averaged(whole).dvr("whole", 1.0, points),
             ]
         }
         _ => vec![

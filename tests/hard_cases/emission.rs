@@ -1,7 +1,10 @@
 //! Emission and absorption: cases 16 to 21.
 
+use angioray::scene::{Homogeneity, HomogeneityRule, Picture};
+use angioray::volume::{NonFinite, Rescale, Volume, Voxels};
+
 use crate::mutant::{Mutant, kernel};
-use crate::trial::{Seen, is, judge, judge_reference, near};
+use crate::trial::{Seen, is, judge, near};
 
 pub const CASES: &[&str] = &[
     "homogeneous",
@@ -49,7 +52,7 @@ fn opacity(optical_depth: f64) -> f64 {
     -(-optical_depth).exp_m1()
 }
 
-/// Opacity along x, of the scene without a name.
+/// Opacity along x, of scenes of one pixel.
 fn along_x(seen: &Seen, optical_depth: f64) -> Vec<String> {
     if seen.pixels() > 1 {
         return Vec::new();
@@ -78,22 +81,24 @@ fn constant_medium(seen: &Seen) -> Vec<String> {
     lines
 }
 
-/// Opacities taken for those of a fixed step.
-const NO_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
-
-/// Sums without compensation, and opacities without log1p.
-const LOST_DIGITS: Mutant = kernel(
-    "lib/transfer.clh",
-    &[("-log1p(-opacity)", "-log(1.0f - opacity)")],
-);
+/// Opacities taken for those of another length.
+const OTHER_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
 
 #[test]
 fn homogeneous() {
+    // The last panel of a ray, which is shorter, taken for a whole one.
+    let whole_panels = kernel(
+        "lib/lattice.clh",
+        &[(
+            "return t < lattice.length_mm ? t : lattice.length_mm;",
+            "return t;",
+        )],
+    );
     judge(
         "emission::homogeneous",
         "homogeneous",
         constant_medium,
-        &[NO_LENGTH],
+        &[whole_panels],
     );
 }
 
@@ -102,7 +107,15 @@ fn slab() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, -8.0 * 0.7_f64.ln() + 4.0 * rising(0.3))
     }
-    judge("emission::slab", "slab", truth, &[NO_LENGTH]);
+    // The nearer point's opacity between two points.
+    let not_between = kernel(
+        "lib/transfer.clh",
+        &[(
+            "return a + (knot_colors[after] - a) * f;",
+            "return f < 0.5f ? a : knot_colors[after];",
+        )],
+    );
+    judge("emission::slab", "slab", truth, &[not_between]);
 }
 
 #[test]
@@ -110,16 +123,29 @@ fn ramp() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, 64.0 * rising(0.95) / 40.0)
     }
-    judge("emission::ramp", "ramp", truth, &[NO_LENGTH]);
+    // Opacity for absorption: right for the faintest alone.
+    let faint_alone = kernel(
+        "lib/transfer.clh",
+        &[(
+            "float absorption = -log1p(-opacity);",
+            "float absorption = opacity;",
+        )],
+    );
+    judge("emission::ramp", "ramp", truth, &[faint_alone]);
 }
 
 #[test]
 fn gaussian() {
+    // What lies behind is not hidden.
+    let not_hidden = kernel(
+        "lib/gather.clh",
+        &[("light * gathered->transmission;", "light;")],
+    );
     judge(
         "emission::gaussian",
         "gaussian",
         |_| Vec::new(),
-        &[NO_LENGTH],
+        &[not_hidden],
     );
 }
 
@@ -128,12 +154,43 @@ fn tf_spike() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, 0.1 * rising(0.9))
     }
-    judge_reference("tf-spike", truth);
+    // Whole intervals between the values of two samples left out; panels judged by their points
+    // alone, whatever lies between.
+    let left_out = kernel(
+        "lib/preintegrated.clh",
+        &[("(below + whole + above)", "(below + above)")],
+    );
+    let points_alone = kernel(
+        "pass/adaptive_emission.cl",
+        &[(
+            "    if (near.after == far.after)\n        return lit_of(",
+            "    if (near.after < INT_MAX)\n        return lit_of(",
+        )],
+    );
+    judge(
+        "emission::tf_spike",
+        "tf-spike",
+        truth,
+        &[left_out, points_alone],
+    );
 }
 
 #[test]
 fn tf_stairs() {
-    judge_reference("tf-stairs", |_| Vec::new());
+    // Every panel counts as it comes.
+    let never_halved = kernel(
+        "pass/adaptive_emission.cl",
+        &[(
+            "bool agree = gathered->transmission * off <= allowed && both.depth <= DEEP;",
+            "bool agree = off >= 0.0f;",
+        )],
+    );
+    judge(
+        "emission::tf_stairs",
+        "tf-stairs",
+        |_| Vec::new(),
+        &[never_halved],
+    );
 }
 
 #[test]
@@ -158,7 +215,12 @@ fn tf_outside() {
             }
         }
     }
-    judge("emission::tf_outside", "tf-outside", truth, &[NO_LENGTH]);
+    // Nothing above the last point.
+    let ends = kernel(
+        "lib/transfer.clh",
+        &[("return knot_colors[knots - 1u];", "return (float4)(0.0f);")],
+    );
+    judge("emission::tf_outside", "tf-outside", truth, &[ends]);
 }
 
 #[test]
@@ -175,7 +237,15 @@ fn opaque_step() {
         lines.extend(is("something is seen", seen.alpha(seen.middle()) > 0.9));
         lines
     }
-    judge("emission::opaque_step", "opaque-step", truth, &[NO_LENGTH]);
+    // Infinite absorption.
+    let infinite = kernel(
+        "lib/transfer.clh",
+        &[(
+            "return absorption < cast.most_absorption ? absorption : cast.most_absorption;",
+            "return absorption;",
+        )],
+    );
+    judge("emission::opaque_step", "opaque-step", truth, &[infinite]);
 }
 
 #[test]
@@ -189,7 +259,12 @@ fn faint_4096() {
             1e-4,
         )
     }
-    judge("emission::faint_4096", "faint-4096", truth, &[LOST_DIGITS]);
+    // Opacities without log1p.
+    let lost_digits = kernel(
+        "lib/transfer.clh",
+        &[("-log1p(-opacity)", "-log(1.0f - opacity)")],
+    );
+    judge("emission::faint_4096", "faint-4096", truth, &[lost_digits]);
 }
 
 #[test]
@@ -197,7 +272,22 @@ fn thin_bright_sheet() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, 110.0 / 255.0 * rising(0.5))
     }
-    judge_reference("thin-bright-sheet", truth);
+    // Leaves that do not know the voxels that they share with the next leaf: the sheet is the last
+    // layer of one.
+    let unshared = Mutant::Octree(|volume| {
+        let dims = volume.dims();
+        let [nx, ..] = dims.usize();
+        let voxels = (0..volume.voxels().len()).map(|i| if i % nx == 17 { 255_u8 } else { 0 });
+        let voxels = Voxels::from(voxels.collect::<Vec<u8>>());
+        let geometry = *volume.geometry();
+        Volume::new(dims, voxels, geometry, Rescale::IDENTITY, NonFinite::Refuse).unwrap()
+    });
+    judge(
+        "emission::thin_bright_sheet",
+        "thin-bright-sheet",
+        truth,
+        &[unshared],
+    );
 }
 
 #[test]
@@ -205,11 +295,21 @@ fn false_homogeneous() {
     fn truth(seen: &Seen) -> Vec<String> {
         along_x(seen, -14.4 * 0.5_f64.ln() + 3.2 * rising(0.5))
     }
+    // The rule on value ranges, at a third of the volume's range: any leaf passes for homogeneous.
+    let by_range = Mutant::Scene(|scene| {
+        let Picture::Emission(emission) = &mut scene.picture else {
+            panic!("not an emission");
+        };
+        emission.homogeneity = Some(Homogeneity {
+            rule: HomogeneityRule::Range,
+            limit: 0.3,
+        });
+    });
     judge(
         "emission::false_homogeneous",
         "false-homogeneous",
         truth,
-        &[NO_LENGTH],
+        &[by_range],
     );
 }
 
@@ -219,6 +319,6 @@ fn anisotropic_1_1_10() {
         "emission::anisotropic_1_1_10",
         "anisotropic-1-1-10",
         constant_medium,
-        &[NO_LENGTH],
+        &[OTHER_LENGTH],
     );
 }

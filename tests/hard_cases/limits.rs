@@ -1,6 +1,6 @@
 //! How far device and reference may be apart, in one table.
 
-use angioray::scene::Picture;
+use angioray::scene::{Emission, QuadratureMethod};
 
 use crate::common::Figure;
 
@@ -10,13 +10,14 @@ pub const WRONG_PIXELS: usize = 0;
 /// Of surfaces, the share of the hits whose depth may be off by more than 1e-3 voxel.
 pub const DISPLACED: f64 = 1e-3;
 
-/// Of other pictures.
-pub fn figures(case: &str, picture: &Picture) -> &'static [(Figure, f64)] {
-    match (picture, case) {
-        (Picture::Surface { .. }, _) => &[],
-        // The share of the value range that single precision cannot tell apart.
-        (Picture::Projection { .. }, _) => &[(Figure::Kind, 0.0), (Figure::ValueMax, 2e-6)],
-        // Under the default quadrature, half a voxel a step.
-        (Picture::Emission { .. }, _) => &[(Figure::AlphaMax, 4e-3)],
+/// Of projections. The values: the share of the range that single precision cannot tell apart.
+pub const PROJECTED: [(Figure, f64); 2] = [(Figure::Kind, 0.0), (Figure::ValueMax, 2e-6)];
+
+/// Of emissions, premultiplied linear light and opacity: the adaptive rule's own bound, of others,
+/// half a voxel a step, what that leaves out at the corners of the field.
+pub fn light(emission: &Emission) -> f64 {
+    match emission.quadrature.method {
+        QuadratureMethod::Adaptive => emission.quadrature.bound,
+        _ => 4e-3,
     }
 }

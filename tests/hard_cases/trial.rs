@@ -11,7 +11,7 @@ use angioray::scene::{Picture, Scene, SceneOptions, Subject};
 use angioray::volume::{HardCase, Histogram, Volume, suggested_iso};
 
 use crate::common::{self, assert_sound, on_reference};
-use crate::limits::{DISPLACED, WRONG_PIXELS, figures};
+use crate::limits::{DISPLACED, PROJECTED, WRONG_PIXELS, light};
 use crate::mutant::{CAUGHT, Mutant, assert_caught, is_mutant};
 
 /// A scene of a case, to be held against what is known of it.
@@ -143,23 +143,6 @@ pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
     }
 }
 
-/// Judges the case's truth on the reference alone.
-pub fn judge_reference(name: &str, truth: Truth) {
-    let (case, _) = HardCase::named(name).unwrap();
-    let volume = case.volume(0).unwrap().volume;
-    for (scene_name, scene) in &resolved(case, 0, &volume) {
-        let frame = &on_reference(&volume, scene);
-        let seen = Seen {
-            name: scene_name,
-            volume: &volume,
-            scene,
-            frame,
-        };
-        let lines = truth(&seen);
-        assert!(lines.is_empty(), "{name} {scene_name}: {lines:?}");
-    }
-}
-
 /// What is wrong with the case's pictures.
 fn wrong(
     device: &Device,
@@ -191,7 +174,7 @@ fn wrong(
             };
             let sound = std::panic::catch_unwind(|| assert_sound(&what, &frame));
             wrong.extend(sound.err().map(|_| format!("{what}: a plane is not sound")));
-            let mut lines = apart(case.name, &volume, scene, &expected, &frame, &what, tell);
+            let mut lines = apart(&volume, scene, &expected, &frame, &what, tell);
             for (by, frame) in [("reference", &expected), ("device", &frame)] {
                 let seen = Seen {
                     name: scene_name,
@@ -229,7 +212,6 @@ pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String,
 
 /// Where the device's picture is not the reference's.
 fn apart(
-    case: &str,
     volume: &Volume,
     scene: &Scene,
     expected: &Frame,
@@ -250,16 +232,41 @@ fn apart(
             lines.push(format!("{verdicts:?}"));
         }
     }
-    for &(figure, limit) in figures(case, &scene.picture) {
-        let measured = figure.of(expected, frame, volume);
+    let measured = match &scene.picture {
+        Picture::Surface { .. } => Vec::new(),
+        Picture::Projection { .. } => PROJECTED
+            .map(|(figure, limit)| {
+                let measured = figure.of(expected, frame, volume);
+                (format!("{figure:?}"), measured, limit)
+            })
+            .to_vec(),
+        Picture::Emission(emission) => {
+            vec![("light".into(), most_light(expected, frame), light(emission))]
+        }
+    };
+    for (figure, measured, limit) in measured {
         if tell {
-            println!("{what}: {figure:?} {measured:.2e}");
+            println!("{what}: {figure} {measured:.2e}");
         }
         if measured > limit {
-            lines.push(format!("{figure:?} {measured:.3e} > {limit:e}"));
+            lines.push(format!("{figure} {measured:.3e} > {limit:e}"));
         }
     }
     lines
+}
+
+/// The largest difference of any channel of premultiplied linear light, and of opacity.
+fn most_light(expected: &Frame, frame: &Frame) -> f64 {
+    let channels = expected.color.iter().flatten();
+    let pairs = channels.zip(frame.color.iter().flatten());
+    pairs.fold(0.0, |most, (a, b)| {
+        let apart = f64::from((a - b).abs());
+        if apart.is_nan() {
+            f64::INFINITY
+        } else {
+            apart.max(most)
+        }
+    })
 }
 
 /// Counts of a surface's pixels.

@@ -19,6 +19,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("reference", &["volume", "scene", "frame"]),
     ("render", &["volume", "scene", "frame", "gpu", "octree"]),
     (
+        "bench",
+        &[
+            "volume",
+            "scene",
+            "frame",
+            "gpu",
+            "octree",
+            "reference",
+            "render",
+        ],
+    ),
+    (
         "cli",
         &[
             "volume",
@@ -28,6 +40,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "octree",
             "reference",
             "render",
+            "bench",
         ],
     ),
 ];

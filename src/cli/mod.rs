@@ -1,5 +1,6 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
+mod bench;
 mod devices;
 mod engine;
 mod info;
@@ -39,6 +40,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
     Devices(devices::DevicesArguments),
@@ -48,6 +50,7 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),
             Self::Devices(arguments) => arguments.run(),

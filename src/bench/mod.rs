@@ -1,0 +1,77 @@
+//! Measuring the renderer against the reference: named experiments, each of which ends in a table.
+//!
+//! A new experiment is a file in `experiments/` with a `pub const EXPERIMENT`, and its line in
+//! `experiments/mod.rs`.
+
+mod borderline;
+mod compare;
+mod effort;
+mod experiments;
+mod interleaved;
+mod results;
+mod specimen;
+mod table;
+
+pub use effort::Effort;
+pub use experiments::EXPERIMENTS;
+pub use results::Results;
+pub use specimen::Specimen;
+pub use table::{Cell, Column, Shown, Table};
+
+use crate::error::{Error, Result};
+use crate::gpu::Device;
+use crate::octree::{Leaf, Octree};
+use crate::progress::Progress;
+use crate::render::{Options, Renderer};
+
+/// What an experiment is given to work with.
+pub struct Bench<'a> {
+    pub device: &'a Device,
+    pub options: Options,
+    pub effort: Effort,
+    /// The user's volumes.
+    pub specimens: Vec<Specimen>,
+    pub progress: &'a dyn Progress,
+}
+
+impl Bench<'_> {
+    fn octree(&self, specimen: &Specimen) -> Result<Octree> {
+        Octree::build(&specimen.volume, Leaf::default(), self.progress)
+    }
+
+    fn renderer<'a>(&'a self, specimen: &'a Specimen, octree: &'a Octree) -> Result<Renderer<'a>> {
+        Renderer::new(self.device, &specimen.volume, octree, self.options)
+    }
+}
+
+/// What an experiment found.
+pub struct Outcome {
+    pub table: Table,
+    /// What the table shows, a sentence each.
+    pub findings: Vec<String>,
+    /// Why the experiment failed: what must hold does not.
+    pub failure: Option<String>,
+}
+
+/// A measurement that anyone can repeat by its name.
+pub struct Experiment {
+    pub name: &'static str,
+    /// One line for the list of experiments.
+    pub about: &'static str,
+    /// Whether [`Bench::specimens`] are looked at.
+    pub takes_volumes: bool,
+    pub run: fn(&Bench) -> Result<Outcome>,
+}
+
+impl Experiment {
+    /// # Errors
+    /// Usage: there is no such experiment; the error lists all.
+    pub fn named(name: &str) -> Result<&'static Self> {
+        let found = EXPERIMENTS.iter().find(|one| one.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
+            Error::usage(format!("there is no experiment '{name}'"))
+                .hint(format!("the experiments are {}", names.join(", ")))
+        })
+    }
+}

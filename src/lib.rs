@@ -10,6 +10,7 @@ pub mod error;
 pub mod extent;
 pub mod frame;
 pub mod gpu;
+pub mod hardcases;
 pub mod octree;
 pub mod output;
 pub mod progress;

@@ -7,8 +7,8 @@ mod common;
 use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
-    Camera, Filter, Knot, Lens, Light, Phong, Picture, Projection, Reflection, Rgb, Scene, Tone,
-    TransferFunction, Window,
+    Camera, ClipPlane, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection, Reflection,
+    Rgb, Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -47,6 +47,10 @@ struct Row {
     /// `None`: at the eye.
     toward_light: Option<[f64; 3]>,
     from: From,
+    /// Of planes about the volume's centre: the normal, and how far, in radii of the bounding
+    /// sphere, the plane lies beyond it.
+    clip: &'static [([f64; 3], f64)],
+    gradient: Gradient,
     filter: Filter,
     step_voxels: f64,
     /// Brightness, contrast, gamma, background.
@@ -60,6 +64,8 @@ const PLAIN: Row = Row {
     reflection: None,
     toward_light: None,
     from: From::Outside,
+    clip: &[],
+    gradient: Gradient::Central,
     filter: Filter::Linear,
     step_voxels: 0.5,
     tone: (0.0, 1.0, 1.0, [0.0; 3]),
@@ -74,6 +80,8 @@ const fn iso(refine: &'static str, caps: bool) -> Look {
 }
 const PHONG: Option<Reflection> = Some(Reflection::Phong);
 const BLINN: Option<Reflection> = Some(Reflection::BlinnPhong);
+/// A wedge: one plane cuts away the near side, one the upper.
+const WEDGE: &[([f64; 3], f64)] = &[([-0.4, -0.9, 0.3], 0.1), ([0.02, 0.01, -0.05], 0.2)];
 const SIDE: Option<[f64; 3]> = Some([0.36, -0.48, 0.8]);
 
 #[rustfmt::skip]
@@ -92,6 +100,23 @@ const ROWS: &[Row] = &[
     Row { from: From::Orthographic, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
     // Corners of voxels are clipped; normals jump where voxels meet, which is where the surface is.
     Row { filter: Filter::Nearest, limits: &[(Kind, 0.006), (DepthMean, 0.06), (NormalMean, 6.0)], ..PLAIN },
+    // Cut open.
+    Row { clip: WEDGE, reflection: PHONG, limits: &[(Kind, 0.002), (DepthMean, 2e-4), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorMean, 1e-4)], ..PLAIN },
+    Row { clip: WEDGE, look: iso("regula-falsi", false), from: From::Inside, limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
+    Row { clip: WEDGE, look: Look::Mip, from: From::Orthographic, limits: &[(Kind, 0.001), (ValueMean, 0.001), (DepthMean, 0.3)], ..PLAIN },
+    Row { clip: WEDGE, look: Look::Mean, step_voxels: 0.25, limits: &[(ValueMean, 3e-4), (ValueMax, 0.005)], ..PLAIN },
+    Row { clip: WEDGE, look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { volume: "u16", clip: WEDGE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "falling", clip: WEDGE, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    // Gradients.
+    Row { gradient: Gradient::Forward, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
+    Row { gradient: Gradient::FourthOrder, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
+    Row { gradient: Gradient::FourthOrder, filter: Filter::Nearest, limits: &[(NormalMean, 6.0)], ..PLAIN },
+    Row { gradient: Gradient::Forward, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "u16", gradient: Gradient::FourthOrder, limits: &[(NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "i16", gradient: Gradient::FourthOrder, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "falling", gradient: Gradient::Forward, limits: &[(NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "sheet", gradient: Gradient::FourthOrder, look: iso("regula-falsi", false), limits: &[(NormalMean, 0.01)], ..PLAIN },
     // Shading and tone.
     Row { limits: &[(ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: PHONG, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
@@ -302,6 +327,14 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
 fn scene(row: &Row, volume: &Volume) -> Scene {
     let mut scene = common::scene(volume, SIZE_PX, picture(row, volume));
     scene.camera = camera(volume, row.from);
+    let (center, radius_mm) = volume.bounding_sphere();
+    let plane = |&(normal, beyond): &([f64; 3], f64)| {
+        let normal = DVec3::from_array(normal);
+        let offset = normal.length() * beyond * radius_mm - normal.dot(center);
+        ClipPlane::new(normal, offset).unwrap()
+    };
+    scene.clip_planes = row.clip.iter().map(plane).collect();
+    scene.gradient = row.gradient;
     scene.sampling.filter = row.filter;
     scene.sampling.step_voxels = row.step_voxels;
     if let Some(toward) = row.toward_light {
@@ -322,8 +355,15 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
 fn describe(row: &Row) -> String {
     let light = row.toward_light.map_or("headlight", |_| "distant light");
     format!(
-        "{} {:?} {:?} {light} {:?} {:?} step {}",
-        row.volume, row.look, row.reflection, row.from, row.filter, row.step_voxels
+        "{} {:?} {:?} {light} {:?} {} planes {:?} {:?} step {}",
+        row.volume,
+        row.look,
+        row.reflection,
+        row.from,
+        row.clip.len(),
+        row.gradient,
+        row.filter,
+        row.step_voxels
     )
 }
 

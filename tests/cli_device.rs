@@ -122,7 +122,7 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
     };
     let names = |v: &Value| {
         v.as_array()
-            .is_some_and(|a| a.len() == 13 && a.iter().all(text))
+            .is_some_and(|a| a.len() == 14 && a.iter().all(text))
     };
     type Check<'a> = &'a dyn Fn(&Value) -> bool;
     let checks: [(&str, Check); 28] = [
@@ -212,8 +212,20 @@ fn the_layers_are_those_of_the_reference() {
         return;
     };
     let names = [
-        "R", "G", "B", "A", "depth.Z", "normal.X", "normal.Y", "normal.Z", "value.V", "steps.N",
-        "nodes.N", "cast.V", "kind.V",
+        "R",
+        "G",
+        "B",
+        "A",
+        "depth.Z",
+        "normal.X",
+        "normal.Y",
+        "normal.Z",
+        "value.V",
+        "steps.N",
+        "nodes.N",
+        "cast.V",
+        "kind.V",
+        "certificate.V",
     ];
     for mode in MODES {
         let line = format!("render blob.nrrd --mode {mode} --size 32 --azimuth 20 --aov all");
@@ -248,6 +260,34 @@ fn the_layers_are_those_of_the_reference() {
             assert!(share_apart(&moved, &channel(&truth, "depth.Z"), 0.05) > 0.05);
         }
     }
+}
+
+#[test]
+fn precomputed_gradients_say_what_they_cost_and_are_worth() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    let render = |name: &str, flags: &str| {
+        let line = "render blob.nrrd --iso 0.4 --size 32 --stats a.json";
+        let output = place.run(&format!("{line} -o {name} {flags} {device}"));
+        assert!(output.status.success(), "{}", stderr(&output));
+        (stderr(&output), place.json("a.json"))
+    };
+    let (said, stats) = render("a.png", "--gradient precomputed --gradient-scale 3");
+    // Directions at the voxels 0, 3, … 21 and 23, three numbers of two bytes each.
+    assert_eq!(stats["memory"]["gradient_bytes"], 9 * 9 * 9 * 6);
+    assert!(stats["times_ms"]["gradient"].as_f64().unwrap() > 0.0);
+    assert_eq!(stats["scene"]["gradient-scale"], 3);
+    let note = said.lines().find(|l| l.starts_with("note: precomputed"));
+    let note = note.unwrap_or_else(|| panic!("{said}"));
+    for part in ["0.0 MB", "mean ", "p99 ", "places of strong gradient"] {
+        assert!(note.contains(part), "{note}");
+    }
+    // The controls: other gradients cost nothing and make another picture.
+    let (said, stats) = render("b.png", "--gradient central");
+    assert_eq!(stats["memory"]["gradient_bytes"], 0);
+    assert!(!said.contains("precomputed"), "{said}");
+    assert_ne!(pixels(&place, "a.png"), pixels(&place, "b.png"));
 }
 
 #[test]

@@ -141,6 +141,9 @@ fn a_negative_number_reaches_its_flag() {
         "--work-group",
         "--color",
         "--background",
+        "--clip-plane",
+        "--gradient-scale",
+        "--gradient-smooth",
     ] {
         let said = said(render, flag);
         assert!(

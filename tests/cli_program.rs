@@ -91,6 +91,10 @@ fn the_stats_scene_and_the_picture_s_metadata_render_the_same_picture_again() {
         ("iso", "--iso 100 --azimuth 40 --shading blinn-phong"),
         ("dvr", "--mode dvr --carm RAO20 --background #102030"),
         ("mip", "--mode mip --window 10%,90%"),
+        (
+            "clip",
+            "--clip-plane -1,0.3,0,8.1 --clip-plane 0,1e-3,0,-0.006",
+        ),
     ] {
         place.done(&format!(
             "render ball.nrrd -o {name}.png {flags} {REFERENCE}"
@@ -129,6 +133,8 @@ fn wrong_usage_is_exit_2() {
     let place = Place::with_ball();
     place.write("bad.toml", "mode = 'mip'\nlight = 'lamp'\n");
     place.write("stray.toml", "mode = 'iso'\n\ncaps-lock = true\n");
+    let planes = "[1, 0, 0, 9], ".repeat(65);
+    place.write("planes.toml", &format!("clip-plane = [{planes}]\n"));
     place.write("nonsense.toml", "mode = 'mip'\ncaps = true\n");
     for (line, reason) in [
         ("render ball.nrrd -o a.png --frobnicate", "--frobnicate"),
@@ -189,6 +195,22 @@ fn wrong_usage_is_exit_2() {
         (
             "render ball.nrrd -o ball.png --stats ball.png --device reference",
             "a file each",
+        ),
+        (
+            "render ball.nrrd -o a.png --clip-plane 1,2,3",
+            "'1,2,3' is not a clip plane",
+        ),
+        (
+            "render ball.nrrd -o a.png --clip-plane 0,-0,0,3",
+            "has no direction",
+        ),
+        (
+            "render ball.nrrd -o a.png --clip-plane inf,0,0,3",
+            "is not a clip plane",
+        ),
+        (
+            "render ball.nrrd -o a.png --scene planes.toml",
+            "65 clip planes: there may be at most 64",
         ),
         ("info", "no volume"),
         ("info ball.nrrd --mode mip", "--mode"),

@@ -8,10 +8,12 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Traverse, Window,
+    ClipPlane, Filter, Knot, Phong, Picture, Projection, Refine, Rgb, SamplingMethod,
+    TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
+use glam::DVec3;
 
 const SIZE_PX: u32 = 72; // not a multiple of any work-group below but 8
 
@@ -92,6 +94,7 @@ fn picture_bits(frame: &Frame) -> Vec<u32> {
     all.extend(frame.normal.iter().flatten().flatten().map(bits));
     all.extend(frame.value.iter().flatten().map(bits));
     all.extend(frame.kind.iter().flatten());
+    all.extend(frame.certificate.iter().flatten());
     all
 }
 
@@ -99,7 +102,8 @@ fn total(counter: &Option<Vec<u32>>) -> u64 {
     counter.iter().flatten().map(|&n| u64::from(n)).sum()
 }
 
-/// Renders every picture with both filters under one sampling; in a fixed order.
+/// Renders every picture with both filters, by steps and exactly where it can be, under one way of
+/// skipping; in a fixed order.
 fn all_frames(
     renderer: &mut Renderer,
     volume: &Volume,
@@ -108,13 +112,23 @@ fn all_frames(
 ) -> Vec<(String, Frame)> {
     let mut frames = Vec::new();
     for picture in pictures(volume.range().max) {
-        for filter in [Filter::Linear, Filter::Nearest] {
+        let integrated = matches!(picture, Picture::Emission { .. });
+        for (filter, method) in [
+            (Filter::Linear, SamplingMethod::Fixed),
+            (Filter::Nearest, SamplingMethod::Fixed),
+            (Filter::Linear, SamplingMethod::Exact),
+            (Filter::Nearest, SamplingMethod::Exact),
+        ] {
+            if integrated && method == SamplingMethod::Exact {
+                continue;
+            }
             let mut scene = common::scene(volume, SIZE_PX, picture.clone());
             scene.sampling.filter = filter;
+            scene.sampling.method = method;
             scene.sampling.skip = skip;
             scene.sampling.traverse = traverse;
             let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;
-            frames.push((format!("{} {filter:?}", picture.mode()), frame));
+            frames.push((format!("{} {filter:?} {method:?}", picture.mode()), frame));
         }
     }
     frames
@@ -146,11 +160,8 @@ fn skipping_and_traversal_never_change_a_bit() {
                     assert_eq!(total(&frame.nodes), 0);
                 }
             }
-            for traverse in [
-                Traverse::Uniform,
-                Traverse::KdRestart,
-                Traverse::Hierarchical,
-            ] {
+            let mut nodes_told = Vec::new();
+            for traverse in Traverse::ALL {
                 let skipped = all_frames(&mut renderer, &volume, true, traverse);
                 for ((what, whole), (_, skipped)) in whole.iter().zip(&skipped) {
                     let what = format!("{name} {what} leaf {leaf} {traverse:?}");
@@ -162,8 +173,50 @@ fn skipping_and_traversal_never_change_a_bit() {
                         assert!(total(&skipped.steps) < total(&whole.steps), "{what}");
                     }
                 }
+                nodes_told.push(total(&skipped[0].1.nodes));
             }
+            // The counters tell the traversals apart, where there are nodes to skip.
+            nodes_told.sort_unstable();
+            nodes_told.dedup();
+            let all = nodes_told.len() == Traverse::ALL.len();
+            assert!(all || name != "tubes", "{name} leaf {leaf}");
         }
+    }
+}
+
+#[test]
+fn skipping_never_changes_a_bit_of_what_is_clipped() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = tubes();
+    let (center, _) = volume.bounding_sphere();
+    let plane = |normal: DVec3, beyond_mm: f64| {
+        let offset = normal.length() * beyond_mm - normal.dot(center);
+        ClipPlane::new(normal, offset).unwrap()
+    };
+    let planes = [
+        plane(DVec3::new(-0.4, 0.9, 0.3), 3.0),
+        plane(DVec3::new(0.1, 0.2, -1.0), 7.0),
+    ];
+    let octree = common::octree(&volume);
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    for picture in pictures(volume.range().max) {
+        let mut frame = |skip, traverse, planes: &[ClipPlane]| {
+            let mut scene = common::scene(&volume, 40, picture.clone());
+            scene.clip_planes = planes.to_vec();
+            scene.sampling.skip = skip;
+            scene.sampling.traverse = traverse;
+            renderer.render(&scene, Wanted::ALL).unwrap().frame
+        };
+        let whole = picture_bits(&frame(false, Traverse::Uniform, &planes));
+        for traverse in Traverse::ALL {
+            let skipped = picture_bits(&frame(true, traverse, &planes));
+            assert!(skipped == whole, "{} {traverse:?}", picture.mode());
+        }
+        // The control: the planes cut.
+        let unclipped = picture_bits(&frame(true, Traverse::Uniform, &[]));
+        assert!(unclipped != whole, "{}", picture.mode());
     }
 }
 

@@ -116,15 +116,24 @@ impl Under {
     }
 }
 
-const MODES: [&str; 8] = [
+const MODES: [&str; 17] = [
     "--mode iso --iso 40% --shading phong",
     "--mode iso --iso 40% --shading none --refine newton:4 --traverse kd-restart",
+    "--mode iso --iso 40% --clip-plane -0.3,1,0.2,-1 --clip-plane 1,0,0,-0.2",
+    "--mode iso --iso 40% --sampling fixed --traverse distance",
     "--mode mip",
     "--mode minip --traverse uniform",
     "--mode mean",
     "--mode lmip --lmip-threshold 40%",
+    "--mode mip --sampling fixed --traverse revelles",
+    "--mode mean --sampling fixed",
+    "--mode lmip --lmip-threshold 40% --sampling fixed",
     "--mode dvr --shading blinn-phong",
     "--mode dvr --shading none --skip off",
+    "--mode iso --iso 40% --gradient precomputed --gradient-scale 3",
+    "--mode iso --iso 40% --gradient fourth-order",
+    "--mode dvr --shading phong --gradient precomputed --gradient-scale 8 --gradient-smooth 1",
+    "--mode mip --clip-plane -0.3,1,0.2,-1",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.
@@ -198,7 +207,7 @@ fn a_write_by_two_work_items_is_reported() {
         return;
     };
     let under = under.with_broken(
-        "pass/cast_surface.cl",
+        "pass/exact_surface.cl",
         "    hit_mm[pixel] =",
         "    hit_mm[pixel / 2u] =",
     );

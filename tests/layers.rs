@@ -16,6 +16,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &[]),
     ("gpu", &[]),
     ("octree", &["volume"]),
+    ("hardcases", &["volume", "scene"]),
     ("reference", &["volume", "scene", "frame"]),
     ("render", &["volume", "scene", "frame", "gpu", "octree"]),
     (
@@ -38,6 +39,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "frame",
             "gpu",
             "octree",
+            "hardcases",
             "reference",
             "render",
             "bench",

@@ -1,7 +1,8 @@
 //! The passes build and take the arguments that their Rust functions give: for every voxel type,
-//! filter and picture, with no layers and counters and with both; for `u8` and the linear filter
-//! also with either alone, and with an octree leaf that is no power of two. The 64-bit index, which
-//! only volumes of more than 2^32 voxels select, is left to `kernel_lint`.
+//! filter and picture, with no layers and counters and with both, and with both for every gradient;
+//! for `u8` and the linear filter also with either alone, and with an octree leaf that is no power of
+//! two. The 64-bit index, which only volumes of more than 2^32 voxels select, is left to
+//! `kernel_lint`.
 
 mod common;
 
@@ -11,7 +12,8 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Filter, Knot, Phong, Picture, Projection, Refine, Rgb, TransferFunction, Window,
+    Filter, Gradient, Knot, Phong, Picture, Precomputed, Projection, Refine, Rgb, TransferFunction,
+    Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
@@ -52,6 +54,29 @@ fn pictures() -> Vec<Picture> {
     pictures
 }
 
+/// Every picture with central differences for each of the outputs; those that shade with the other
+/// gradients too, for the last of them.
+fn views(outputs: &[Wanted]) -> Vec<(Picture, Gradient, &[Wanted])> {
+    let last = &outputs[outputs.len() - 1..];
+    let others = [
+        Gradient::Forward,
+        Gradient::FourthOrder,
+        Gradient::Precomputed(Precomputed::default()),
+    ];
+    let mut all = Vec::new();
+    for picture in pictures() {
+        let is_shaded = match &picture {
+            Picture::Surface { phong, .. } | Picture::Emission { phong, .. } => phong.is_some(),
+            Picture::Projection { .. } => false,
+        };
+        all.push((picture.clone(), Gradient::Central, outputs));
+        if is_shaded {
+            all.extend(others.map(|gradient| (picture.clone(), gradient, last)));
+        }
+    }
+    all
+}
+
 fn layers_alone() -> Wanted {
     Wanted {
         counters: false,
@@ -84,12 +109,13 @@ where
     let octree = Octree::build(&volume, leaf, &Silent).unwrap();
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let mut launches = 0;
-    for picture in pictures() {
+    for (picture, gradient, outputs) in views(outputs) {
         for &filter in filters {
             for &wanted in outputs {
                 let mut scene = common::scene(&volume, 8, picture.clone());
                 scene.size = ImageSize::new(8, 8).unwrap();
                 scene.sampling.filter = filter;
+                scene.gradient = gradient;
                 let rendering = renderer.render(&scene, wanted).unwrap();
                 assert!(
                     rendering

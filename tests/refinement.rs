@@ -7,7 +7,8 @@ use angioray::extent::ImageSize;
 use angioray::frame::Wanted;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Camera, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, Scene, Tone,
+    Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, SamplingMethod,
+    Scene, Tone,
 };
 use angioray::volume::Volume;
 use common::volume_of;
@@ -67,11 +68,14 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
             color: Rgb([1.0; 3]),
             phong: None,
         },
+        clip_planes: Vec::new(),
         sampling: Sampling {
+            method: SamplingMethod::Fixed,
             step_voxels: STEP_VOXELS,
             ..Sampling::default()
         },
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;

@@ -2,8 +2,8 @@
 
 use angioray::extent::{ImageSize, Range};
 use angioray::scene::{
-    Lens, Picture, Projection, Resolved, SceneFile, SceneOptions, Subject, Threshold,
-    TransferChoice,
+    Gradient, Lens, Picture, Precomputed, Projection, Resolved, SceneFile, SceneOptions, Subject,
+    Threshold, TransferChoice,
 };
 use clap::Parser;
 use glam::DVec3;
@@ -103,7 +103,7 @@ fn a_projection_shows_the_whole_range_unless_told() {
 
 /// Scenes of every kind, far from the defaults.
 #[rustfmt::skip]
-const SCENES: [&[&str]; 7] = [
+const SCENES: [&[&str]; 10] = [
     &["head.nrrd"],
     &[
         "a/b,c.nrrd", "--iso", "33.333333333333336", "--caps", "off", "--refine", "newton:7",
@@ -119,6 +119,9 @@ const SCENES: [&[&str]; 7] = [
     &["--mode", "mip", "--carm", "RAO 33.3 CAU 12.1", "--zoom", "1.7", "--roll", "11"],
     &["--mode", "lmip", "--lmip-threshold", "40%", "--window", "otsu,90%"],
     &["--mode", "minip", "--view", "superior"],
+    &["--gradient", "precomputed", "--gradient-scale", "5", "--gradient-smooth", "0.7"],
+    &["--mode", "dvr", "--shading", "phong", "--gradient", "fourth-order"],
+    &["--clip-plane", "0.1,-2,3e-7,1e300", "--clip-plane", "-1,0,0,0.30000000000000004"],
     &["--mode", "dvr"],
     &["--mode", "dvr", "--tf", "cta", "--shading", "phong", "--termination", "0.95"],
 ];
@@ -309,4 +312,107 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
             assert!(!accepted(value), "{flag} {value}");
         }
     }
+}
+
+#[test]
+fn clip_planes_come_as_one_list_from_the_flags_or_from_the_file() {
+    let two = "clip-plane = [[1, 0, 0, -2.5], '0,-2,0,7']";
+    let of_file = resolved(&file(two)).scene.clip_planes;
+    let as_flags = ["--clip-plane", "1,0,0,-2.5", "--clip-plane", "0,-2,0,7"];
+    assert_eq!(of_file, resolved(&flags(&as_flags)).scene.clip_planes);
+    assert_eq!(of_file.len(), 2);
+    assert_eq!(of_file[1].normal_world(), DVec3::new(0.0, -2.0, 0.0));
+    // Flags win over the file as a whole.
+    let over = flags(&["--clip-plane", "0,0,1,3"]).over(file(two));
+    let over = resolved(&over).scene.clip_planes;
+    assert_eq!(over.len(), 1);
+    assert_eq!(over[0].offset(), 3.0);
+    assert!(resolved(&file("")).scene.clip_planes.is_empty());
+    // The stored scene has them as lists of numbers.
+    let text = resolved(&file(two)).options.to_toml().unwrap();
+    assert!(
+        text.contains("clip-plane = [[1, 0, 0, -2.5], [0, -2, 0, 7]]"),
+        "{text}"
+    );
+    for wrong in [
+        "clip-plane = [1, 0, 0, 5]",
+        "clip-plane = [[1, 0, 0]]",
+        "clip-plane = [[0, 0, 0, 1]]",
+        "clip-plane = [[nan, 0, 0, 1]]",
+        "clip-plane = 7",
+    ] {
+        assert!(refusal(wrong).contains("scene.toml:1"), "{wrong}");
+    }
+    // What keeps nothing is said: the volume is a ball of 10 mm about 1,2,3.
+    let notes = |said: &str| resolved(&flags(&["--iso", "1", "--clip-plane", said])).notes;
+    assert_eq!(
+        notes("0,0,-2,-14.01"),
+        ["clip-plane = 0,0,-2,-14.01 keeps nothing of the volume"]
+    );
+    assert!(notes("0,0,-2,-13.99").is_empty());
+}
+
+#[test]
+fn gradients_belong_to_normals_and_their_numbers_to_precomputed_ones() {
+    let gradient = |line: &[&str]| resolved(&flags(line)).scene.gradient;
+    assert_eq!(gradient(&[]), Gradient::Central);
+    let precomputed = |scale, sigma| Gradient::Precomputed(Precomputed::new(scale, sigma).unwrap());
+    assert_eq!(
+        gradient(&["--gradient", "precomputed"]),
+        precomputed(2, 0.0)
+    );
+    let line = ["--gradient", "precomputed", "--gradient-scale", "8"];
+    assert_eq!(gradient(&line), precomputed(8, 0.0));
+    let unshaded = ["--shading", "none", "--gradient", "forward"];
+    assert_eq!(gradient(&unshaded), Gradient::Forward);
+    for (wrong, reason) in [
+        (
+            "gradient-scale = 3",
+            "'gradient-scale' does not go with gradient 'central'",
+        ),
+        (
+            "gradient = 'forward'\ngradient-smooth = 1",
+            "only precomputed gradients are smoothed",
+        ),
+        (
+            "mode = 'mip'\ngradient = 'central'",
+            "a projection has no normals",
+        ),
+        ("mode = 'dvr'\ngradient = 'forward'", "without shading"),
+        (
+            "gradient = 'sobel'",
+            "central, forward, fourth-order, precomputed",
+        ),
+        (
+            "gradient = 'precomputed'\ngradient-scale = 9",
+            "from 1 to 8",
+        ),
+        (
+            "gradient = 'precomputed'\ngradient-scale = 0",
+            "from 1 to 8",
+        ),
+        (
+            "gradient = 'precomputed'\ngradient-smooth = -1",
+            "from 0 to 100 voxels",
+        ),
+    ] {
+        let said = refusal(wrong);
+        assert!(said.contains(reason), "{wrong}: {said}");
+    }
+    // A flag drops what of the file it rules out, and nothing else.
+    let of_file = "gradient = 'precomputed'\ngradient-scale = 4";
+    let over = |line: &[&str], text: &str| resolved(&flags(line).over(file(text))).scene.gradient;
+    assert_eq!(over(&[], of_file), precomputed(4, 0.0));
+    assert_eq!(over(&["--gradient", "forward"], of_file), Gradient::Forward);
+    assert_eq!(
+        over(&["--gradient-scale", "3"], of_file),
+        precomputed(3, 0.0)
+    );
+    assert_eq!(over(&["--mode", "mip"], of_file), Gradient::Central);
+    assert_eq!(over(&["--mode", "dvr"], of_file), Gradient::Central);
+    let shaded = ["--mode", "dvr", "--shading", "phong"];
+    assert_eq!(over(&shaded, of_file), precomputed(4, 0.0));
+    assert_eq!(over(&["--shading", "none"], of_file), precomputed(4, 0.0));
+    let stray = flags(&["--iso", "1"]).over(file("mode = 'mip'\ngradient = 'forward'"));
+    assert!(stray.checked().is_err());
 }

@@ -8,8 +8,10 @@
 // least_transmission: the colour lost is at most least_transmission times the brightest colour.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
-// with opacity in w) and, per octree node, its CLASS_*. Writes color, premultiplied linear light;
-// with COUNTERS the samples taken and the nodes tested.
+// with opacity in w), the clip planes (index space) and, per octree node, its CLASS_*. Writes color,
+// premultiplied linear light; with COUNTERS the samples taken and the nodes tested.
+#include "lib/clip.clh"
+#include "lib/gradient.clh"
 #include "lib/octree.clh"
 #include "lib/shade.clh"
 #include "lib/transfer.clh"
@@ -35,6 +37,10 @@ static inline float path_share_mm(Lattice lattice, uint simpson, uint k)
 
 kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                           const global float *knot_values, const global float4 *knot_colors,
+                          const global float4 *clip_planes, uint clip_count,
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+                          const global short *directions, uint4 direction_grid,
+#endif
                           VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
                           global float4 *color
 #if COUNTERS
@@ -50,6 +56,7 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     float3 emitted = (float3)(0.0f);
     float optical_depth = 0.0f;
     float lost = 0.0f; // of the optical depth by rounding: thousands of thin samples keep their digits
@@ -84,7 +91,14 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
                     float3 rgb = seen.xyz;
 #if SHADED
                     float3 toward_eye = -ray.dir_world;
-                    rgb = reflect_light(shading, rgb, field_normal(voxels, volume, p, toward_eye), toward_eye);
+                    GradientSource source;
+#if GRADIENT == GRADIENT_PRECOMPUTED
+                    source.directions = directions;
+                    source.grid = direction_grid;
+#else
+                    source.voxels = voxels;
+#endif
+                    rgb = reflect_light(shading, rgb, field_normal(source, volume, p, toward_eye), toward_eye);
 #endif
                     emitted += rgb * (transmission * -expm1(-depth_here));
                     float term = depth_here - lost; // Kahan 1965

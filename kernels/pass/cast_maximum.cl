@@ -7,10 +7,11 @@
 // PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
 // either end counts when the value falls away from it.
 //
-// Reads the voxels and, per octree node, its range and its CLASS_* (CLASS_BELOW: nowhere above
-// `floor`). Writes per pixel kind (surface where the ray
-// meets the volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the
-// eye; +inf for the mean); with COUNTERS the samples taken and the nodes tested.
+// Reads the voxels, the clip planes (index space) and, per octree node, its range and its CLASS_*
+// (CLASS_BELOW: nowhere above `floor`). Writes per pixel kind (surface where the ray meets the
+// volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the eye; +inf for
+// the mean); with COUNTERS the samples taken and the nodes tested.
+#include "lib/clip.clh"
 #include "lib/octree.clh"
 #include "lib/peak.clh"
 
@@ -19,6 +20,7 @@
 #endif
 
 kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range, const global uint4 *levels,
+                            const global float4 *clip_planes, uint clip_count,
                             VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                             global uint *kind, global float *value
 #if LAYERS
@@ -37,6 +39,7 @@ kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_cl
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     bool meets = interval.enter <= interval.exit;
     float found = 0.0f;
     float found_mm = INFINITY; // from the entry

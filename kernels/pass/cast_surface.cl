@@ -4,16 +4,19 @@
 // the iso value skipped (Lesar et al. 2015, §III-C), the crossing refined between two samples.
 // With `probe`, two samples on one side between which the field may turn are looked between for a
 // peak on the other side. "Inside" is Phi >= iso. With caps, a ray that enters through a face of
-// the volume where it is inside hits there.
+// the volume or a clip plane where it is inside hits there.
 //
-// Reads the voxels and, per octree node, its CLASS_*. Writes per pixel hit_mm (from the base plane
-// along the ray; +inf: none) and kind; with LAYERS depth (mm from the eye) and value at the hit
-// (stored units; 0 without a hit); with COUNTERS the samples taken and the nodes tested.
+// Reads the voxels, the clip planes (index space) and, per octree node, its CLASS_*. Writes per pixel
+// hit_mm (from the base plane along the ray; +inf: none) and kind; with LAYERS depth (mm from the
+// eye) and value at the hit (stored units; 0 without a hit); with COUNTERS the samples taken and the
+// nodes tested.
+#include "lib/clip.clh"
 #include "lib/octree.clh"
 #include "lib/peak.clh"
 #include "lib/refine.clh"
 
 kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+                         const global float4 *clip_planes, uint clip_count,
                          VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                          global float *hit_mm, global uint *kind
 #if LAYERS
@@ -32,6 +35,7 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     float hit = INFINITY; // mm from the entry
     uint met = KIND_NOTHING;
     float hit_value = 0.0f;

@@ -8,11 +8,12 @@
 // PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
 // either end counts when the value falls away from it, and a plateau counts from its start.
 //
-// Reads the voxels and, per octree node, its range and its CLASS_* (CLASS_BELOW: nowhere above
+// Reads the voxels, the clip planes (index space) and, per octree node, its range and its CLASS_* (CLASS_BELOW: nowhere above
 // `floor`). Writes per pixel kind (surface where the ray meets the volume) and value (stored units;
 // 0 where it does not); with LAYERS depth (mm from the eye; +inf for the mean); with COUNTERS the
 // cells read and the nodes tested.
 #include "lib/cells.clh"
+#include "lib/clip.clh"
 
 #if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
 #error "PROJECTION, which value is wanted, is given by the host"
@@ -22,7 +23,8 @@
 #define FLAT_SHARE 1e-6f
 
 kernel void exact_projection(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range,
-                             const global uint4 *levels, VolumeGrid volume, RayGrid rays, ProjectionCast cast,
+                             const global uint4 *levels, const global float4 *clip_planes, uint clip_count,
+                             VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                              global uint *kind, global float *value
 #if LAYERS
                              , global float *depth
@@ -40,6 +42,7 @@ kernel void exact_projection(const global VOXEL *voxels, const global uchar *nod
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     bool meets = interval.enter <= interval.exit;
     float found = 0.0f;
     float found_mm = INFINITY; // from the entry

@@ -1,15 +1,17 @@
 // The first point of each ray where Phi - iso changes sign, exactly: cell by cell, the field's cubic
 // solved in each (lib/crossing.clh); nodes that lie wholly on one side of the iso value are leapt
-// over. "Inside" is Phi >= iso. With caps, a ray that enters through a face of the volume where it
-// is inside hits there.
+// over. "Inside" is Phi >= iso. With caps, a ray that enters through a face of the volume or a clip
+// plane where it is inside hits there.
 //
-// Reads the voxels and, per octree node, its CLASS_*. Writes per pixel hit_mm (from the base plane
+// Reads the voxels, the clip planes (index space) and, per octree node, its CLASS_*. Writes per pixel hit_mm (from the base plane
 // along the ray; +inf: none) and kind; with LAYERS depth (mm from the eye) and value at the hit
 // (stored units; 0 without a hit); with CERTIFICATE what is proven of the pixel, CERTIFICATE_*; with
 // COUNTERS the cells read and the nodes tested.
+#include "lib/clip.clh"
 #include "lib/crossing.clh"
 
 kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+                          const global float4 *clip_planes, uint clip_count,
                           VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                           global float *hit_mm, global uint *kind
 #if LAYERS
@@ -31,10 +33,11 @@ kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_c
 
     Ray ray = pixel_ray(rays, i, j);
     Interval interval = volume_interval(volume, ray);
+    clip_interval(&interval, clip_planes, clip_count, ray);
     Crossing found;
     found.t = INFINITY;
     found.kind = KIND_NOTHING;
-    found.certificate = CERTIFICATE_MISS;
+    found.certificate = only_touches(interval) ? CERTIFICATE_UNDECIDED : CERTIFICATE_MISS;
     float hit_value = 0.0f;
     uint cells_read = 0u;
     uint nodes_tested = 0u;

@@ -3,6 +3,7 @@
 //! A new experiment is a file in `experiments/` with a `pub const EXPERIMENT`, and its line in
 //! `experiments/mod.rs`.
 
+pub mod aimed;
 mod borderline;
 mod compare;
 mod effort;
@@ -11,12 +12,14 @@ mod interleaved;
 mod results;
 mod specimen;
 mod table;
+mod verdict;
 
 pub use effort::Effort;
 pub use experiments::EXPERIMENTS;
 pub use results::Results;
 pub use specimen::Specimen;
 pub use table::{Cell, Column, Shown, Table};
+pub use verdict::{Judge, Met, Verdict};
 
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -31,6 +34,8 @@ pub struct Bench<'a> {
     pub effort: Effort,
     /// The user's volumes.
     pub specimens: Vec<Specimen>,
+    /// How many rays, where the experiment counts rays and the user said so.
+    pub rays: Option<u64>,
     pub progress: &'a dyn Progress,
 }
 
@@ -60,6 +65,8 @@ pub struct Experiment {
     pub about: &'static str,
     /// Whether [`Bench::specimens`] are looked at.
     pub takes_volumes: bool,
+    /// Whether [`Bench::rays`] is.
+    pub counts_rays: bool,
     pub run: fn(&Bench) -> Result<Outcome>,
 }
 

@@ -48,6 +48,11 @@ group! {
         #[arg(value_name = "VOLUME")]
         volumes: Vec<FilePath>,
 
+        /// Rays in the experiment rays [default: 10000000; a tenth of it with --quick, ten times as
+        /// many with --full]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        rays: u64,
+
         /// A folder for the table as results.csv and results.json, unrounded; made where there is
         /// none
         #[arg(short, long, value_name = "DIR")]
@@ -100,6 +105,14 @@ impl BenchArguments {
                 "the experiment '{name}' takes no volumes: it makes its own"
             )));
         }
+        if options.rays.is_some() && !experiment.counts_rays {
+            return Err(Error::usage(format!(
+                "'--rays' has no effect in the experiment '{name}'"
+            )));
+        }
+        if options.rays == Some(0) {
+            return Err(Error::usage("'--rays 0' measures nothing").hint("give a number from 1 on"));
+        }
         let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
         let effort = match (is_on(options.quick), is_on(options.full)) {
             (true, true) => {
@@ -125,6 +138,7 @@ impl BenchArguments {
             },
             effort,
             specimens: specimens.collect::<Result<_>>()?,
+            rays: options.rays,
             progress: &bars,
         };
         let results = options

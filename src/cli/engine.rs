@@ -10,7 +10,7 @@ use crate::gpu::Device;
 use crate::octree::Octree;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
-use crate::render::{Options, Renderer};
+use crate::render::{GradientFigures, Options, Renderer};
 use crate::scene::Scene;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
@@ -106,6 +106,8 @@ pub struct Rendered {
     /// Without reading and encoding.
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
+    /// Where gradients were precomputed.
+    pub gradients: Option<GradientFigures>,
     pub device_bytes: u64,
 }
 
@@ -161,6 +163,7 @@ impl Engine {
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,
                         render: rendering.render_ms,
+                        gradient: rendering.gradients.map_or(0.0, |figures| figures.ms),
                         ..Times::default()
                     },
                     passes: rendering
@@ -171,6 +174,7 @@ impl Engine {
                             ms: pass.ms,
                         })
                         .collect(),
+                    gradients: rendering.gradients,
                     device_bytes: rendering.device_bytes,
                 })
             }
@@ -202,6 +206,7 @@ fn by_reference(
             name: "reference".into(),
             ms: render_ms,
         }],
+        gradients: None,
         device_bytes: 0,
     })
 }

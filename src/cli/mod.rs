@@ -3,6 +3,7 @@
 mod bench;
 mod devices;
 mod engine;
+mod hardcase;
 mod info;
 mod load;
 mod outputs;

@@ -1,32 +1,42 @@
 //! `angioray phantom`.
 
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::output::write_atomically;
-use crate::scene::options::group::group;
+use crate::scene::options::group::{Keys, group};
 use crate::scene::options::plain::readable;
 use crate::scene::{FilePath, SpacingMm, Switch};
-use crate::volume::{PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd};
+use crate::volume::{
+    HardCase, PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd,
+};
 
+use super::hardcase::{self, Chosen};
 use super::outputs;
 use super::scene::SceneArgument;
 use super::terminal::{message, note};
+
+const EXAMPLE: &str = "Example:
+  angioray phantom vessels -o vessels.nrrd --size 256 --seed 7
+  angioray phantom sphere -o sphere.nrrd --size 64x64x32 --spacing 1,1,2 --type f32
+  angioray phantom hardcase:thin-vessels -o thin.nrrd";
 
 /// Make a test volume whose field is known
 ///
 /// Kinds: sphere, slab, ramp, gaussian, marschner-lobb, voxel, noise, and vessels: a seeded tree
 /// that branches by Murray's law, whose centrelines and radii go into FILE.tree.json.
+///
+/// hardcase:NAME makes a volume on which renderers fail, with the scenes that go with it and the
+/// right answer; --help lists them.
 #[derive(clap::Args)]
 #[command(override_usage = "angioray phantom KIND -o FILE.nrrd [OPTIONS]")]
-#[command(after_help = "Example:
-  angioray phantom vessels -o vessels.nrrd --size 256 --seed 7
-  angioray phantom sphere -o sphere.nrrd --size 64x64x32 --spacing 1,1,2 --type f32")]
+#[command(after_help = EXAMPLE, after_long_help = format!("{}{EXAMPLE}", hardcase::help() + "\n"))]
 pub struct PhantomArguments {
     #[command(flatten)]
     phantom: PhantomOptions,
@@ -41,9 +51,9 @@ pub struct PhantomArguments {
 group! {
     /// What is made, of which voxels.
     pub struct PhantomOptions {
-        /// What it contains
-        #[arg(value_name = "KIND", value_parser = kind())]
-        kind: PhantomKind,
+        /// What it contains: a kind, or hardcase:NAME
+        #[arg(value_name = "KIND", value_parser = Kinds)]
+        kind: Kind,
 
         /// The NRRD file to write
         #[arg(short, long, value_name = "FILE.nrrd")]
@@ -121,11 +131,10 @@ impl PhantomArguments {
 
         let Some(kind) = asked.kind else {
             let kinds = PhantomKind::ALL.map(PhantomKind::name).join(", ");
-            return Err(
-                Error::usage("no kind of phantom was named").hint(format!("write one of {kinds}"))
-            );
+            return Err(Error::usage("no kind of phantom was named")
+                .hint(format!("write one of {kinds}, or hardcase:NAME")));
         };
-        let Some(FilePath(output)) = asked.output else {
+        let Some(FilePath(output)) = asked.output.clone() else {
             return Err(Error::usage("no file to write was named")
                 .hint("give it by '--output', or as 'output' in the scene file"));
         };
@@ -141,6 +150,21 @@ impl PhantomArguments {
         }
         let inputs: Vec<&Path> = self.scene.path().into_iter().collect();
         outputs::check(&output, &inputs)?;
+        let gzip = asked.gzip.is_some_and(Switch::is_on);
+        let kind = match kind {
+            Kind::Phantom(kind) => kind,
+            Kind::Hard(chosen) => {
+                let given = asked.given().into_iter().chain(shape.given());
+                let mut strays = given.filter(|key| !["kind", "output", "gzip"].contains(&&**key));
+                return match strays.next() {
+                    Some(key) => Err(Error::usage(format!(
+                        "'{}' does not go with a hard case: its voxels are what makes it hard",
+                        key.replace("voxel-type", "type")
+                    ))),
+                    None => hardcase::write(chosen, &output, gzip, &inputs),
+                };
+            }
+        };
         let tree_file = output.with_extension("tree.json");
         if kind == PhantomKind::Vessels {
             outputs::check(&tree_file, &inputs)?;
@@ -168,7 +192,7 @@ impl PhantomArguments {
         };
         let made = phantom(&spec)?;
         made.volume.notes().iter().for_each(note);
-        write_nrrd(&made.volume, &output, asked.gzip.is_some_and(Switch::is_on))?;
+        write_nrrd(&made.volume, &output, gzip)?;
         message(format_args!(
             "wrote {}: {dims} {}; {}",
             output.display(),
@@ -196,11 +220,57 @@ fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {
     })
 }
 
-/// The kinds by name, each with its sentence in the help.
-fn kind() -> impl TypedValueParser<Value = PhantomKind> {
-    let names =
-        PhantomKind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.description()));
-    PossibleValuesParser::new(names).try_map(|name| name.parse::<PhantomKind>())
+/// What is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    Phantom(PhantomKind),
+    Hard(Chosen),
+}
+
+impl FromStr for Kind {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let Some(name) = text.strip_prefix(hardcase::PREFIX) else {
+            return text.parse().map(Self::Phantom);
+        };
+        // Parsers of flags and of scene files pass on no hint.
+        let (case, member) = HardCase::named(name).map_err(|error| {
+            let hint = error.hint_text().unwrap_or_default();
+            Error::usage(format!("{error}: {hint}"))
+        })?;
+        Ok(Self::Hard(Chosen { case, member }))
+    }
+}
+
+/// The kinds by name, each with its sentence in the help, and hard cases.
+#[derive(Clone)]
+struct Kinds;
+
+impl TypedValueParser for Kinds {
+    type Value = Kind;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        text: &OsStr,
+    ) -> std::result::Result<Kind, clap::Error> {
+        if text.to_string_lossy().starts_with(hardcase::PREFIX) {
+            let parser = StringValueParser::new().try_map(|text| text.parse::<Kind>());
+            return parser.parse_ref(command, argument, text);
+        }
+        let parser = PossibleValuesParser::new(PhantomKind::ALL.map(PhantomKind::name));
+        let parser = parser.try_map(|name| name.parse::<Kind>());
+        parser.parse_ref(command, argument, text)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let kinds =
+            PhantomKind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.description()));
+        let hard = PossibleValue::new("hardcase:NAME").help("A hard case: --help lists them.");
+        Some(Box::new(kinds.into_iter().chain([hard])))
+    }
 }
 
 /// `NXxNYxNZ`, or `N` for a cube.
@@ -261,4 +331,4 @@ impl FromStr for Axis {
     }
 }
 
-readable!(PhantomKind, GridSize, VoxelName, Axis);
+readable!(Kind, GridSize, VoxelName, Axis);

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
+use crate::render::GradientFigures;
 use crate::scene::{FilePath, SceneOptions, TransferChoice};
 use crate::volume::files_of;
 
@@ -73,6 +74,9 @@ impl RenderArguments {
         let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
         let rendered = engine.render(&loaded.volume, &source, &resolved.scene, wanted, &bars)?;
 
+        if let Some(figures) = &rendered.gradients {
+            note(gradient_note(figures));
+        }
         let began = Instant::now();
         let scene_text = resolved.options.to_toml()?;
         let metadata = [("scene", scene_text.as_str()), ("version", VERSION)];
@@ -111,8 +115,24 @@ impl RenderArguments {
             times_ms,
             passes: rendered.passes,
             counts: Counts::of(&rendered.frame, &resolved.scene.picture),
-            memory: Memory::now(rendered.device_bytes),
+            memory: Memory::now(
+                rendered.device_bytes,
+                rendered.gradients.map_or(0, |figures| figures.bytes),
+            ),
         };
         stats.write(path)
     }
+}
+
+/// What precomputed gradients cost and are worth.
+fn gradient_note(figures: &GradientFigures) -> String {
+    let megabytes = figures.bytes as f64 / 1e6;
+    let angle = match figures.angle {
+        Some(angle) => format!(
+            "angle against central differences: mean {:.1}°, p99 {:.1}° (at {} places of strong gradient)",
+            angle.mean_deg, angle.p99_deg, angle.places
+        ),
+        None => "the volume is flat".to_owned(),
+    };
+    format!("precomputed gradients: {megabytes:.1} MB; {angle}")
 }

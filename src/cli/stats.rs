@@ -73,6 +73,8 @@ pub struct Times {
     /// Kernel compilation.
     pub build: f64,
     pub upload: f64,
+    /// Computing and uploading precomputed gradients.
+    pub gradient: f64,
     /// All passes of the frame.
     pub render: f64,
     pub encode: f64,
@@ -126,13 +128,16 @@ pub struct Memory {
     /// The most that the process held; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
+    /// Of these, precomputed gradients.
+    pub gradient_bytes: u64,
 }
 
 impl Memory {
-    pub fn now(device_bytes: u64) -> Self {
+    pub fn now(device_bytes: u64, gradient_bytes: u64) -> Self {
         Self {
             host_peak_bytes: host_peak_bytes(),
             device_bytes,
+            gradient_bytes,
         }
     }
 }

@@ -5,6 +5,7 @@
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
+use crate::scene::Gradient;
 use crate::volume::Voxel;
 
 use super::cells::{Segment, Walk};
@@ -49,6 +50,7 @@ pub struct Emitted {
 #[derive(Debug, Clone, Copy)]
 pub struct Shading {
     pub lighting: Lighting,
+    pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
     pub gradient_world_from_index: glam::DMat3,
 }
@@ -109,7 +111,7 @@ struct Lit {
 
 impl Lit {
     fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading) -> Self {
-        let gradient = field.gradient(segment);
+        let gradient = field.gradient(segment, shading.gradient);
         let rows = shading.gradient_world_from_index.transpose();
         let component = |row: DVec3| Cubic::combine(&gradient, row.to_array());
         Self {

@@ -1,4 +1,4 @@
-//! Φ and its gradient inside one box of the lattice, as polynomials along a ray.
+//! Φ inside one box of the lattice, as a polynomial along a ray.
 
 use crate::extent::Dims;
 use crate::scene::Filter;
@@ -52,38 +52,25 @@ impl<'a, T: Voxel> Field<'a, T> {
         Cubic::along(corners, p, d)
     }
 
-    /// The index-space gradient along a segment: per axis `(Φ(clamp(p + e)) − Φ(clamp(p − e)))/2`,
-    /// e one voxel, clamped to the domain. Divided by 2 at the border too.
-    pub fn gradient(&self, segment: &Segment) -> [Cubic; 3] {
-        std::array::from_fn(|axis| {
-            let ahead = self.shifted(segment, axis, true).0;
-            let behind = self.shifted(segment, axis, false).0;
-            Cubic(std::array::from_fn(|k| 0.5 * (ahead[k] - behind[k])))
-        })
-    }
-
-    /// Φ along a segment moved by one voxel along an axis, clamped to the domain: past the last
+    /// Φ along a segment moved by whole voxels along an axis, clamped to the domain: past the last
     /// (first) box it slides along the domain's face.
-    fn shifted(&self, segment: &Segment, axis: usize, ahead: bool) -> Cubic {
+    pub fn shifted(&self, segment: &Segment, axis: usize, by: isize) -> Cubic {
         let mut moved = *segment;
         let last = self.lattice.count[axis] - 1;
-        let (delta, outside) = if ahead {
-            (1.0, segment.cell[axis] == last)
+        let wanted = segment.cell[axis].checked_add_signed(by);
+        if let Some(cell) = wanted.filter(|&cell| cell <= last) {
+            moved.cell[axis] = cell;
+            moved.p0[axis] += by as f64;
+            moved.p1[axis] += by as f64;
         } else {
-            (-1.0, segment.cell[axis] == 0)
-        };
-        if outside {
-            let face = if ahead { self.dims[axis] - 1 } else { 0 };
+            let (cell, face) = if by > 0 {
+                (last, self.dims[axis] - 1)
+            } else {
+                (0, 0)
+            };
+            moved.cell[axis] = cell;
             moved.p0[axis] = face as f64;
             moved.p1[axis] = face as f64;
-        } else {
-            moved.p0[axis] += delta;
-            moved.p1[axis] += delta;
-            moved.cell[axis] = if ahead {
-                segment.cell[axis] + 1
-            } else {
-                segment.cell[axis] - 1
-            };
         }
         Self::along(&self.corners(moved.cell), &moved)
     }

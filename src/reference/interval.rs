@@ -18,6 +18,14 @@ pub struct Face {
     pub low: bool,
 }
 
+/// What a ray enters its interval through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    Face(Face),
+    /// The number of the scene's clip plane.
+    Plane(usize),
+}
+
 /// The ray's interval, measured from where it starts: a far eye costs no digits inside.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval {
@@ -28,8 +36,8 @@ pub struct Interval {
     pub start: [f64; 3],
     /// Voxels per mm.
     pub dir: [f64; 3],
-    /// The face the ray enters through; `None` when it starts inside (or on the surface).
-    pub face: Option<Face>,
+    /// `None` when the ray starts inside (or on the surface).
+    pub entry: Option<Entry>,
 }
 
 impl Interval {
@@ -91,7 +99,7 @@ impl Interval {
             length_mm,
             start,
             dir: ray.dir,
-            face,
+            entry: face.map(Entry::Face),
         })
     }
 }
@@ -108,9 +116,10 @@ mod tests {
     fn rays_enter_and_leave_through_faces() {
         let i = interval([-2.0, 4.0, 1.0], [0.5, 0.0, -0.0]).unwrap();
         assert_eq!((i.enter_mm, i.length_mm), (4.0, 8.0));
-        assert_eq!(i.face, Some(Face { axis: 0, low: true }));
+        let low_x = Face { axis: 0, low: true };
+        assert_eq!(i.entry, Some(Entry::Face(low_x)));
         let i = interval([1.0, 4.0, 1.0], [0.0, 0.0, -1.0]).unwrap();
-        assert_eq!((i.enter_mm, i.length_mm, i.face), (0.0, 1.0, None));
+        assert_eq!((i.enter_mm, i.length_mm, i.entry), (0.0, 1.0, None));
         assert!(interval([-2.0, 4.0, 1.0], [-0.5, 0.0, 0.0]).is_none());
         assert!(interval([-2.0, 9.0, 1.0], [0.5, 0.0, 0.0]).is_none());
     }

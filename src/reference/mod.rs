@@ -2,15 +2,17 @@
 //! acceleration structure. It is what the device's pictures are compared with.
 //!
 //! Along a ray the trilinear field is a cubic polynomial in every cell, and so is each component of
-//! the central-difference gradient (a shift by a whole voxel keeps the cell faces where they are).
+//! the gradient by differences (a shift by a whole voxel keeps the cell faces where they are).
 //! Surfaces and projections are solved from these cubics to machine precision; emission–absorption
 //! is integrated adaptively between the points where its integrand is not smooth.
 
 mod cells;
+mod clip;
 mod collocation;
 mod cubic;
 mod emission;
 mod field;
+mod gradient;
 mod interval;
 mod medium;
 mod projection;

@@ -1,11 +1,12 @@
 //! The isosurface: where Φ ≥ iso first changes along a ray.
 
 use crate::frame::Kind;
+use crate::scene::Gradient;
 use crate::volume::Voxel;
 
-use super::cells::{Segment, Walk};
+use super::cells::Walk;
 use super::field::{Field, bounds};
-use super::interval::{Face, Interval};
+use super::interval::{Entry, Interval};
 
 /// A point of the isosurface, or of a cap.
 #[derive(Debug, Clone, Copy)]
@@ -16,8 +17,8 @@ pub struct Crossing {
     pub value: f64,
     /// ∇Φ in index space; 0 on a cap.
     pub gradient: [f64; 3],
-    /// The face whose normal a cap has.
-    pub cap: Option<Face>,
+    /// What a cap closes: it has the normal of that.
+    pub cap: Option<Entry>,
 }
 
 impl Crossing {
@@ -31,7 +32,7 @@ impl Crossing {
 }
 
 /// The first change of "Φ ≥ iso" on the interval, and the number of boxes walked. With `caps`, a
-/// ray that enters through a face where Φ ≥ iso hits there.
+/// ray that enters through a face or a clip plane where Φ ≥ iso hits there.
 ///
 /// A field that touches the iso value from below in one point is hit where the polynomial's
 /// turning point, as computed, reaches iso.
@@ -40,6 +41,7 @@ pub fn first_crossing<T: Voxel>(
     interval: &Interval,
     iso: f64,
     caps: bool,
+    gradient: Gradient,
 ) -> (Option<Crossing>, u32) {
     let mut walked = 0;
     let mut inside = None;
@@ -56,15 +58,17 @@ pub fn first_crossing<T: Voxel>(
         let crossing = |s: f64| Crossing {
             at_mm: segment.at_mm(s),
             value: phi.at(s),
-            gradient: gradient_at(field, &segment, s),
+            gradient: field
+                .gradient(&segment, gradient)
+                .map(|component| component.at(s)),
             cap: None,
         };
-        if walked == 1 && inside && caps && interval.face.is_some() {
+        if walked == 1 && inside && caps && interval.entry.is_some() {
             let cap = Crossing {
                 at_mm: 0.0,
                 value: start,
                 gradient: [0.0; 3],
-                cap: interval.face,
+                cap: interval.entry,
             };
             return (Some(cap), walked);
         }
@@ -81,8 +85,4 @@ pub fn first_crossing<T: Voxel>(
         }
     }
     (None, walked)
-}
-
-fn gradient_at<T: Voxel>(field: &Field<T>, segment: &Segment, s: f64) -> [f64; 3] {
-    field.gradient(segment).map(|component| component.at(s))
 }

@@ -8,9 +8,10 @@ use crate::scene::{Picture, Projection, Ray, Scene, Window, linear_from_srgb};
 use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
+use super::clip::IndexPlane;
 use super::emission::{self, Shading};
 use super::field::Field;
-use super::interval::{Face, IndexRay, Interval};
+use super::interval::{Entry, IndexRay, Interval};
 use super::medium::Medium;
 use super::projection::project;
 use super::shade::{Lighting, normal_from_gradient};
@@ -47,13 +48,14 @@ impl Sight {
     };
 }
 
-/// A volume and a scene, prepared for casting rays. Of the scene it uses the picture, the light
-/// and the filter; step, refinement, traversal and early termination are the device's alone.
+/// A volume and a scene, prepared for casting rays. Of the scene it uses the picture, the clip
+/// planes, the light, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
 pub struct Tracer<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
     origin_world: DVec3,
     index_from_world: DMat3,
+    clip_planes: Vec<IndexPlane>,
     noise: f64,
     medium: Option<Medium>,
 }
@@ -76,6 +78,9 @@ impl<'a> Tracer<'a> {
             scene,
             origin_world: volume.geometry().origin_mm(),
             index_from_world,
+            clip_planes: (scene.clip_planes.iter())
+                .map(|&plane| IndexPlane::new(plane, volume.geometry().world_from_index()))
+                .collect(),
             noise: magnitude * NOISE_SHARE,
             medium: match &scene.picture {
                 Picture::Emission { transfer, .. } => Some(Medium::new(transfer)),
@@ -92,13 +97,16 @@ impl<'a> Tracer<'a> {
             origin: origin_index.to_array(),
             dir: (self.index_from_world * ray.dir_world).to_array(),
         };
-        let Some(interval) = Interval::new(&index_ray, self.volume.dims()) else {
+        let dims = self.volume.dims();
+        let inside = Interval::new(&index_ray, dims);
+        let kept = inside.and_then(|inside| inside.clipped(&self.clip_planes, dims));
+        let Some(interval) = kept else {
             return Sight::NOTHING;
         };
         with_voxels!(self.volume.voxels(), voxels => {
             let field = Field::new(
                 voxels,
-                self.volume.dims(),
+                dims,
                 self.volume.rescale(),
                 self.scene.sampling.filter,
             );
@@ -109,7 +117,8 @@ impl<'a> Tracer<'a> {
     fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
-                let (crossing, cells) = first_crossing(field, interval, *iso, *caps);
+                let (crossing, cells) =
+                    first_crossing(field, interval, *iso, *caps, self.scene.gradient);
                 let seen = crossing.map_or(Sight::NOTHING, |crossing| {
                     self.surface(&crossing, interval, dir_world)
                 });
@@ -122,7 +131,7 @@ impl<'a> Tracer<'a> {
 
     fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> Sight {
         let normal_world = match crossing.cap {
-            Some(face) => self.outward_normal(face),
+            Some(entry) => self.outward_normal(entry),
             None => {
                 let gradient = DVec3::from_array(crossing.gradient);
                 normal_from_gradient(self.gradient_world_from_index() * gradient, -dir_world)
@@ -173,6 +182,7 @@ impl<'a> Tracer<'a> {
         };
         let shading = phong.map(|phong| Shading {
             lighting: Lighting::new(phong, self.scene.light, dir_world),
+            gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
         });
         let emitted = emission::integrate(field, interval, medium, shading.as_ref());
@@ -189,7 +199,11 @@ impl<'a> Tracer<'a> {
         self.index_from_world.transpose()
     }
 
-    fn outward_normal(&self, face: Face) -> DVec3 {
+    fn outward_normal(&self, entry: Entry) -> DVec3 {
+        let face = match entry {
+            Entry::Face(face) => face,
+            Entry::Plane(i) => return self.scene.clip_planes[i].outward_world(),
+        };
         let mut outward = DVec3::ZERO;
         outward[face.axis] = if face.low { -1.0 } else { 1.0 };
         (self.gradient_world_from_index() * outward).normalize_or_zero()

@@ -2,15 +2,22 @@
 
 mod abi;
 mod classify;
+mod clip;
+mod directions;
+mod gradient;
 mod passes;
 mod picture;
 mod pipeline;
 mod planes;
+mod ray_caster;
 mod rays;
 mod reach;
 mod twins;
 mod variant;
 
+pub use directions::{AngleError, Directions};
+pub use gradient::GradientFigures;
 pub use pipeline::{Options, Renderer, Rendering};
+pub use ray_caster::{FirstCrossing, RayCaster};
 pub use twins::struct_layouts;
 pub use variant::Variant;

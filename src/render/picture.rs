@@ -11,6 +11,8 @@ use crate::volume::Volume;
 
 use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
+use super::clip::DeviceClip;
+use super::gradient::DeviceGradient;
 use super::passes::{
     DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, exact_projection,
     exact_surface, shade_surface, surface_normal, window_value,
@@ -27,6 +29,8 @@ pub struct View<'a> {
     pub volume: &'a Volume,
     pub octree: &'a Octree,
     pub uploaded: &'a DeviceVolume,
+    pub clip: &'a DeviceClip,
+    pub gradient: DeviceGradient<'a>,
     pub rays: RayGrid,
 }
 
@@ -102,6 +106,7 @@ pub fn surface(
         SamplingMethod::Fixed => cast_surface(
             run,
             view.uploaded,
+            view.clip,
             &node_class,
             &view.rays,
             &cast,
@@ -113,6 +118,7 @@ pub fn surface(
         SamplingMethod::Exact => exact_surface(
             run,
             view.uploaded,
+            view.clip,
             &node_class,
             &view.rays,
             &cast,
@@ -126,7 +132,16 @@ pub fn surface(
 
     let normal = if wanted.normal || phong.is_some() {
         let mut normal = run.plane("normal plane")?;
-        surface_normal(run, view.uploaded, &view.rays, &hit_mm, &kind, &mut normal)?;
+        surface_normal(
+            run,
+            view.uploaded,
+            view.gradient,
+            view.clip,
+            &view.rays,
+            &hit_mm,
+            &kind,
+            &mut normal,
+        )?;
         Some(normal)
     } else {
         None
@@ -188,6 +203,7 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         run,
         which,
         view.uploaded,
+        view.clip,
         &node_class,
         &view.rays,
         &cast,
@@ -255,8 +271,9 @@ pub fn emission(
     let mut counters = run.counters(view.wanted.counters)?;
     cast_emission(
         run,
-        phong.is_some(),
+        phong.map(|_| view.gradient),
         view.uploaded,
+        view.clip,
         &node_class,
         &on_device,
         &view.rays,

@@ -10,6 +10,8 @@ use crate::octree::Octree;
 use crate::scene::{Picture, Sampling, Scene};
 use crate::volume::Volume;
 
+use super::clip::DeviceClip;
+use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
 use super::planes::check_room;
@@ -36,6 +38,8 @@ pub struct Renderer<'a> {
     volume: &'a Volume,
     octree: &'a Octree,
     uploaded: DeviceVolume,
+    /// Those of the last picture that needed some.
+    directions: Option<DeviceDirections>,
     built: Built,
     work_group: [usize; 2],
     upload_ms: f64,
@@ -52,6 +56,8 @@ pub struct Rendering {
     pub upload_ms: f64,
     /// Device time from the first launch's start to the last one's end.
     pub render_ms: f64,
+    /// Of precomputed gradients, where the picture made use of them.
+    pub gradients: Option<GradientFigures>,
     /// Held on the device while rendering.
     pub device_bytes: u64,
 }
@@ -101,6 +107,7 @@ impl<'a> Renderer<'a> {
             volume,
             octree,
             uploaded,
+            directions: None,
             built: Built::default(),
             work_group,
             upload_ms: start.elapsed().as_secs_f64() * 1e3,
@@ -113,7 +120,19 @@ impl<'a> Renderer<'a> {
     /// The device fails or has no room, or the step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
         check_step(scene, self.volume)?;
-        check_room(self.device, scene.size, wanted, self.uploaded.bytes())?;
+        let needed = gradient::needed(scene, wanted);
+        if let Some(how) = needed
+            && self.directions.as_ref().is_none_or(|d| d.how != how)
+        {
+            self.directions = None; // its memory first
+            let made = DeviceDirections::upload(self.device, self.volume, how)?;
+            self.directions = Some(made);
+        }
+        let directions = self.directions.as_ref();
+        let directions_bytes = directions.map_or(0, |directions| directions.figures.bytes);
+        let directions = directions.filter(|_| needed.is_some());
+        let held_bytes = self.uploaded.bytes() + directions_bytes;
+        check_room(self.device, scene.size, wanted, held_bytes)?;
         let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
         let mut run = Run {
@@ -124,12 +143,16 @@ impl<'a> Renderer<'a> {
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling),
         };
+        let world_from_index = self.volume.geometry().world_from_index();
+        let clip = DeviceClip::upload(self.device, &scene.clip_planes, world_from_index)?;
         let view = View {
             scene,
             wanted,
             volume: self.volume,
             octree: self.octree,
             uploaded: &self.uploaded,
+            clip: &clip,
+            gradient: DeviceGradient::of(scene.gradient, directions),
             rays: ray_grid(&scene.camera, scene.size, self.volume),
         };
         let mut planes = match &scene.picture {
@@ -167,7 +190,8 @@ impl<'a> Renderer<'a> {
             build_ms: self.built.build_ms() - build_ms_before,
             upload_ms: std::mem::take(&mut self.upload_ms),
             render_ms,
-            device_bytes: self.uploaded.bytes() + planes.bytes(),
+            gradients: directions.map(|directions| directions.figures),
+            device_bytes: held_bytes + clip.planes.bytes() + planes.bytes(),
         })
     }
 }

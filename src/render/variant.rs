@@ -4,7 +4,8 @@ use crate::frame::{Certificate, Kind};
 use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
 use crate::scene::{
-    Filter, Phong, Refine, RefineMethod, Reflection, Sampling, TransferFunction, Traverse,
+    ClipPlane, Filter, Gradient, Phong, Refine, RefineMethod, Reflection, Sampling,
+    TransferFunction, Traverse,
 };
 use crate::volume::{Volume, VoxelType};
 
@@ -89,6 +90,18 @@ const fn refine_constant(method: RefineMethod) -> u32 {
     }
 }
 
+pub const GRADIENT_PRECOMPUTED: u32 = 3;
+
+/// How the kernels are told to find gradients.
+pub const fn gradient_constant(gradient: Gradient) -> u32 {
+    match gradient {
+        Gradient::Central => 0,
+        Gradient::Forward => 1,
+        Gradient::FourthOrder => 2,
+        Gradient::Precomputed(_) => GRADIENT_PRECOMPUTED,
+    }
+}
+
 const REFLECTION_NONE: u32 = 0;
 
 pub fn reflection_number(phong: Option<Phong>) -> u32 {
@@ -117,6 +130,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
     ("TRANSFER_MOST_KNOTS", TransferFunction::MAX_KNOTS as u32),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
@@ -149,6 +163,13 @@ const CONSTANTS: &[(&str, u32)] = &[
     ),
     ("REFINE_ILLINOIS", refine_constant(RefineMethod::Illinois)),
     ("REFINE_NEWTON", refine_constant(RefineMethod::Newton)),
+    ("GRADIENT_CENTRAL", gradient_constant(Gradient::Central)),
+    ("GRADIENT_FORWARD", gradient_constant(Gradient::Forward)),
+    (
+        "GRADIENT_FOURTH_ORDER",
+        gradient_constant(Gradient::FourthOrder),
+    ),
+    ("GRADIENT_PRECOMPUTED", GRADIENT_PRECOMPUTED),
     ("REFLECTION_NONE", REFLECTION_NONE),
     ("REFLECTION_PHONG", reflection_constant(Reflection::Phong)),
     (

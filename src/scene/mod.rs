@@ -4,7 +4,9 @@
 //! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.
 
 mod camera;
+mod clip;
 mod color;
+mod gradient;
 mod light;
 pub(crate) mod options;
 mod picture;
@@ -15,7 +17,9 @@ mod transfer_file;
 mod view;
 
 pub use camera::{Camera, Lens, Ray};
+pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use gradient::{Gradient, Precomputed};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
 pub use picture::{Picture, Projection, Window};
@@ -32,8 +36,12 @@ pub struct Scene {
     pub size: ImageSize,
     pub camera: Camera,
     pub picture: Picture,
+    /// At most [`ClipPlane::MOST`]: a ray sees what lies on the kept side of all.
+    pub clip_planes: Vec<ClipPlane>,
     pub sampling: Sampling,
     pub light: Light,
+    /// Of normals, in the layer and in shading.
+    pub gradient: Gradient,
     pub tone: Tone,
 }
 

@@ -10,7 +10,7 @@ pub enum Picture {
     /// `iso`: the first point on the ray's interval where Φ − iso changes sign.
     Surface {
         iso: f64,
-        /// A ray that enters the volume through a face where Φ ≥ iso hits there.
+        /// A ray that enters its interval through a face or a clip plane where Φ ≥ iso hits there.
         caps: bool,
         refine: Refine,
         color: Rgb,

@@ -14,7 +14,8 @@ pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
 pub use histogram::{Histogram, suggested_iso};
 pub use phantom::{
-    MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment, VesselTree, phantom,
+    HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
+    VesselTree, orientation_of, phantom,
 };
 pub use read::{RawLayout, RawSize, RawType, ReadOptions, files_of, read};
 pub use smooth::smooth;

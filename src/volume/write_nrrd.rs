@@ -27,16 +27,42 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
         calibrated = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
         &calibrated
     };
+    let type_name = match voxels.voxel_type() {
+        VoxelType::U8 => "uint8",
+        VoxelType::U16 => "uint16",
+        VoxelType::I16 => "int16",
+        VoxelType::F32 => "float",
+    };
+    let endian = if cfg!(target_endian = "big") {
+        "big"
+    } else {
+        "little"
+    };
+    write_nrrd_of(volume, type_name, endian, voxels.bytes(), path, gzip)
+}
+
+/// As [`write_nrrd`], with other voxels than the volume's own: bytes of NRRD's type `type_name`.
+///
+/// # Errors
+/// The file cannot be written.
+pub(super) fn write_nrrd_of(
+    volume: &Volume,
+    type_name: &str,
+    endian: &str,
+    voxels: &[u8],
+    path: &Path,
+    gzip: bool,
+) -> Result<()> {
     write_atomically(path, |out| {
         let write = || -> io::Result<()> {
-            out.write_all(header(volume, voxels.voxel_type(), gzip).as_bytes())?;
+            out.write_all(header(volume, type_name, endian, gzip).as_bytes())?;
             if gzip {
                 let mut encoder = GzEncoder::new(out, Compression::default());
-                encoder.write_all(voxels.bytes())?;
+                encoder.write_all(voxels)?;
                 encoder.finish()?;
                 Ok(())
             } else {
-                out.write_all(voxels.bytes())
+                out.write_all(voxels)
             }
         };
         write().map_err(|cause| Error::io(path, "write the volume", &cause))
@@ -44,37 +70,26 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
 }
 
 /// The header, its closing blank line included.
-fn header(volume: &Volume, voxel_type: VoxelType, gzip: bool) -> String {
+fn header(volume: &Volume, type_name: &str, endian: &str, gzip: bool) -> String {
     let [nx, ny, nz] = volume.dims().array();
     let world_from_index = volume.geometry().world_from_index();
     let axes = world_from_index.matrix3;
     let vector = |v: DVec3| format!("({},{},{})", v.x, v.y, v.z);
     format!(
         "NRRD0005\n\
-         type: {}\n\
+         type: {type_name}\n\
          dimension: 3\n\
          space: left-posterior-superior\n\
          sizes: {nx} {ny} {nz}\n\
          space directions: {} {} {}\n\
          kinds: domain domain domain\n\
-         endian: {}\n\
+         endian: {endian}\n\
          encoding: {}\n\
          space origin: {}\n\
          \n",
-        match voxel_type {
-            VoxelType::U8 => "uint8",
-            VoxelType::U16 => "uint16",
-            VoxelType::I16 => "int16",
-            VoxelType::F32 => "float",
-        },
         vector(axes.x_axis),
         vector(axes.y_axis),
         vector(axes.z_axis),
-        if cfg!(target_endian = "big") {
-            "big"
-        } else {
-            "little"
-        },
         if gzip { "gzip" } else { "raw" },
         vector(world_from_index.translation),
     )

@@ -11,7 +11,9 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Camera, Lens, Light, Picture, Sampling, SamplingMethod, Scene, Tone};
+use angioray::scene::{
+    Camera, Gradient, Lens, Light, Picture, Sampling, SamplingMethod, Scene, Tone,
+};
 use angioray::volume::{Geometry, NonFinite, ReadOptions, Rescale, Volume, Voxels, read};
 use glam::DVec3;
 
@@ -119,11 +121,13 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         size: ImageSize::new(size_px, size_px).unwrap(),
         camera: camera(volume, OBLIQUE),
         picture,
+        clip_planes: Vec::new(),
         sampling: Sampling {
             method: SamplingMethod::Fixed,
             ..Sampling::default()
         },
         light: Light::default(),
+        gradient: Gradient::default(),
         tone: Tone::default(),
     }
 }

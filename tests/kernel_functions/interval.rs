@@ -6,18 +6,18 @@ use angioray::scene::Filter;
 use crate::{Random, U8, build, common, room, run, upload, variant};
 
 #[derive(Debug, Clone, Copy)]
-struct Case {
-    size: [u32; 3],
-    origin: [f32; 3],
-    dir: [f32; 3],
+pub struct Case {
+    pub size: [u32; 3],
+    pub origin: [f32; 3],
+    pub dir: [f32; 3],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Inside {
-    enter: f64,
-    exit: f64,
-    axis: u32,
-    by_face: bool,
+pub struct Inside {
+    pub enter: f64,
+    pub exit: f64,
+    pub axis: u32,
+    pub by_face: bool,
 }
 
 fn on_device(cases: &[Case]) -> Option<Vec<Inside>> {
@@ -78,7 +78,7 @@ fn on_device(cases: &[Case]) -> Option<Vec<Inside>> {
 
 /// The part of the ray with t ≥ 0 inside the box of voxel centres, half a voxel either side of a
 /// single one. `border` widens the box: 0 is right.
-fn truth(case: &Case, border: f64) -> Inside {
+pub fn truth(case: &Case, border: f64) -> Inside {
     let mut found = Inside {
         enter: 0.0,
         exit: f64::INFINITY,
@@ -133,7 +133,7 @@ fn agrees(case: &Case, got: Inside, border: f64) -> bool {
         && got.by_face == truth.by_face
 }
 
-fn random_cases(random: &mut Random) -> Vec<Case> {
+pub fn random_cases(random: &mut Random) -> Vec<Case> {
     (0..20_000)
         .map(|_| {
             let size: [u32; 3] = std::array::from_fn(|_| 1 + random.below(20));

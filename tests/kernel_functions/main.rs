@@ -4,8 +4,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod clip;
 mod color;
 mod field;
+mod gradient;
 mod interval;
 mod peak;
 mod reflection;

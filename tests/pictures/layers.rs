@@ -25,6 +25,7 @@ fn plane(frame: &Frame, name: &str) -> Vec<f32> {
         "steps.N" => count(&frame.steps),
         "nodes.N" => count(&frame.nodes),
         "kind.V" => count(&frame.kind),
+        "certificate.V" => count(&frame.certificate),
         "cast.V" => vec![1.0; frame.size.pixels()],
         other => panic!("no channel {other}"),
     }
@@ -58,7 +59,7 @@ fn exr_holds_every_layer_exactly() {
     let mut names = channels(&all_layers(Format::Exr));
     names.sort();
     assert_eq!(read.keys().cloned().collect::<Vec<_>>(), names);
-    assert_eq!(names.len(), 13);
+    assert_eq!(names.len(), 14);
     for (name, samples) in &read {
         let bits = |s: &[f32]| s.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(samples), bits(&plane(&frame, name)), "{name}");
@@ -102,9 +103,9 @@ fn npy_has_numpys_header_and_the_channels_last() {
     write(&path, &frame, &encoding, &METADATA).unwrap();
     let bytes = fs::read(&path).unwrap();
 
-    // As numpy 2.4 writes np.zeros((3, 5, 13), '<f4').
+    // As numpy 2.4 writes np.zeros((3, 5, 14), '<f4').
     let mut expected = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 13), }");
+    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 14), }");
     expected.resize(127, b' ');
     expected.push(b'\n');
     assert_eq!(bytes[..128], expected);
@@ -114,7 +115,7 @@ fn npy_has_numpys_header_and_the_channels_last() {
         .chunks_exact(4)
         .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
         .collect();
-    assert_eq!(values.len(), 3 * 5 * 13);
+    assert_eq!(values.len(), 3 * 5 * 14);
     for (channel, name) in names.iter().enumerate() {
         let samples: Vec<_> = values
             .iter()
@@ -140,7 +141,14 @@ fn channel_names_keep_one_order() {
     );
     assert_eq!(
         channels(&all_layers(Format::Exr))[8..],
-        ["value.V", "steps.N", "nodes.N", "cast.V", "kind.V"]
+        [
+            "value.V",
+            "steps.N",
+            "nodes.N",
+            "cast.V",
+            "kind.V",
+            "certificate.V"
+        ]
     );
     assert_eq!(channels(&Encoding::new(Format::Jpeg)), ["R", "G", "B"]);
 }

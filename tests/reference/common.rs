@@ -3,8 +3,8 @@
 use angioray::extent::{Dims, ImageSize};
 use angioray::reference::{Sight, Tracer};
 use angioray::scene::{
-    Camera, Filter, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb, Sampling, Scene,
-    Tone, TransferFunction, Window,
+    Camera, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb, Sampling,
+    Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DQuat, DVec3};
@@ -71,8 +71,10 @@ pub fn scene(picture: Picture) -> Scene {
         size: ImageSize::new(8, 8).unwrap(),
         camera: Camera::look_at(DVec3::NEG_Y * 100.0, DVec3::ZERO, DVec3::Z, lens).unwrap(),
         picture,
+        clip_planes: Vec::new(),
         sampling: Sampling::default(),
         light: Light::Headlight,
+        gradient: Gradient::default(),
         tone: Tone::default(),
     }
 }

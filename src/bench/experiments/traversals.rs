@@ -13,6 +13,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     about: "times and counters of the ways through the octree, which must all give the same bytes; \
             on the volumes named, or on the vessel phantom",
     takes_volumes: true,
+    counts_rays: false,
     run,
 };
 

@@ -15,6 +15,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     about: "hits missed, errors and times of fixed steps and of exact casting, on straight vessels of \
             four radii and on the volumes named",
     takes_volumes: true,
+    counts_rays: false,
     run,
 };
 

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceGradient, DeviceVolume, Run, levels, switch, voxels};
 
 /// A transfer function on the device, knots ascending in stored units.
 pub struct DeviceTransfer {
@@ -17,8 +17,9 @@ pub struct DeviceTransfer {
 #[allow(clippy::too_many_arguments)]
 pub fn cast_emission(
     run: &mut Run,
-    shaded: bool,
+    shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -29,9 +30,10 @@ pub fn cast_emission(
 ) -> Result<()> {
     let with_counters = counters.is_some();
     let variant = run.variant;
-    let defines = variant
-        .defines()
-        .with("SHADED", switch(shaded))
+    let gradient = shaded_by.unwrap_or(DeviceGradient::none());
+    let defines = gradient
+        .define(variant.defines())
+        .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_emission", defines, || {
         let mut signature = vec![
@@ -40,12 +42,17 @@ pub fn cast_emission(
             levels(),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
+        ];
+        signature.extend(gradient.parameters());
+        signature.extend([
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
             value::<EmissionCast>("cast"),
             value::<Shading>("shading"),
             output::<[f32; 4]>("color"),
-        ];
+        ]);
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
@@ -56,6 +63,10 @@ pub fn cast_emission(
         .input(&volume.levels)
         .input(&transfer.values)
         .input(&transfer.colors)
+        .input(&clip.planes)
+        .value(&clip.count);
+    let launch = gradient
+        .give(launch)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

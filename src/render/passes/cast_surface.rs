@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
 
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
 /// Depth (mm from the eye) and value at the hit (stored units).
 pub type Layers<'a> = (&'a mut Buffer<f32>, &'a mut Buffer<f32>);
@@ -14,6 +14,7 @@ pub type Layers<'a> = (&'a mut Buffer<f32>, &'a mut Buffer<f32>);
 pub fn cast_surface(
     run: &mut Run,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     rays: &RayGrid,
     cast: &SurfaceCast,
@@ -33,6 +34,8 @@ pub fn cast_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
             value::<SurfaceCast>("cast"),
@@ -50,6 +53,8 @@ pub fn cast_surface(
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
+        .input(&clip.planes)
+        .value(&clip.count)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -5,7 +5,7 @@ use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{ProjectionCast, RayGrid, VolumeGrid};
 use crate::render::variant::ProjectionLoop;
 
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
 /// One value per ray in stored units, from every cell that matters; `kind` where the ray meets the volume, and the `depth` (mm from the
 /// eye) at which it was found.
@@ -14,6 +14,7 @@ pub fn exact_projection(
     run: &mut Run,
     which: ProjectionLoop,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     rays: &RayGrid,
     cast: &ProjectionCast,
@@ -37,6 +38,8 @@ pub fn exact_projection(
                 input::<u8>("node_class"),
                 input::<[f32; 2]>("node_range"),
                 levels(),
+                DeviceClip::planes_parameter(),
+                DeviceClip::count_parameter(),
                 value::<VolumeGrid>("volume"),
                 value::<RayGrid>("rays"),
                 value::<ProjectionCast>("cast"),
@@ -55,6 +58,8 @@ pub fn exact_projection(
         .input(node_class)
         .input(&volume.node_range)
         .input(&volume.levels)
+        .input(&clip.planes)
+        .value(&clip.count)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -5,7 +5,7 @@ use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
 
 use super::cast_surface::Layers;
-use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
+use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
 /// The first point of each ray where Φ − iso changes sign, solved in every cell: `hit_mm` from the base
 /// plane, `kind`, and what is proven of it.
@@ -13,6 +13,7 @@ use super::{Counters, DeviceVolume, Run, levels, switch, voxels};
 pub fn exact_surface(
     run: &mut Run,
     volume: &DeviceVolume,
+    clip: &DeviceClip,
     node_class: &Buffer<u8>,
     rays: &RayGrid,
     cast: &SurfaceCast,
@@ -35,6 +36,8 @@ pub fn exact_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
             value::<RayGrid>("rays"),
             value::<SurfaceCast>("cast"),
@@ -55,6 +58,8 @@ pub fn exact_surface(
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
+        .input(&clip.planes)
+        .value(&clip.count)
         .value(&volume.grid)
         .value(rays)
         .value(cast)

@@ -21,6 +21,8 @@ use crate::gpu::{
 };
 
 use super::abi::VolumeGrid;
+use super::clip::DeviceClip;
+use super::gradient::DeviceGradient;
 use super::variant::{Variant, voxel_cl_name};
 
 pub use cast_emission::{DeviceTransfer, cast_emission};

@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeTable, Deserializer};
 
 use super::{
-    CameraOptions, FilePath, PictureOptions, SamplingOptions, SceneOptions, ToneOptions,
-    TransferChoice, VolumeOptions,
+    CameraOptions, ClipOptions, FilePath, PictureOptions, SamplingOptions, SceneOptions,
+    ToneOptions, TransferChoice, VolumeOptions,
 };
 use crate::error::{Error, Result};
 use crate::scene::toml_error::{line, located};
@@ -120,6 +120,7 @@ impl SceneOptions {
             volume: VolumeOptions::of_file(file)?,
             picture: file.group::<PictureOptions>()?,
             camera: file.group::<CameraOptions>()?,
+            clip: file.group::<ClipOptions>()?,
             sampling: file.group::<SamplingOptions>()?,
             tone: file.group::<ToneOptions>()?,
         };

@@ -9,7 +9,9 @@
 //! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
 
 mod camera;
+mod clip;
 mod file;
+mod gradient;
 pub(crate) mod group;
 mod numbers;
 mod picture;
@@ -23,11 +25,13 @@ mod volume;
 mod words;
 
 pub use camera::CameraOptions;
+pub use clip::ClipOptions;
 pub use file::{SceneFile, flag_names};
+pub use gradient::GradientScale;
 pub(crate) use numbers::concise;
 pub use numbers::{
     AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
-    StepVoxels, Termination, Zoom,
+    SigmaVoxels, StepVoxels, Termination, Zoom,
 };
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;
@@ -35,7 +39,7 @@ pub use subject::Subject;
 pub use tone::ToneOptions;
 pub use values::{CArm, LightChoice, SpacingMm, SrgbColor, Threshold, Triple, WindowEnds};
 pub use volume::{FilePath, RawSizeText, VolumeOptions};
-pub use words::{Mode, NonFiniteRule, Shading, Switch, View};
+pub use words::{GradientMethod, Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
@@ -53,6 +57,9 @@ pub struct SceneOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub camera: CameraOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub clip: ClipOptions,
     #[command(flatten)]
     #[serde(flatten)]
     pub sampling: SamplingOptions,
@@ -84,6 +91,7 @@ impl SceneOptions {
         Self {
             volume: self.volume.over(file.volume),
             camera: self.camera.clone().over(self.camera.keep_of(file.camera)),
+            clip: self.clip.over(file.clip),
             picture: self
                 .picture
                 .clone()
@@ -102,6 +110,7 @@ impl SceneOptions {
     pub fn checked(mut self) -> Result<Self> {
         self.camera.check()?;
         self.picture.check()?;
+        self.clip.check()?;
         if self.picture.mode() == Mode::Dvr && self.sampling.sampling == Some(SamplingMethod::Exact)
         {
             return Err(Error::usage(
@@ -125,6 +134,7 @@ impl SceneOptions {
             volume: self.volume.clone().filled(),
             picture: self.picture.clone().filled(subject)?,
             camera: self.camera.clone().filled(subject)?,
+            clip: self.clip.clone().filled()?,
             sampling: self.sampling.clone().filled(method)?,
             tone: self.tone.clone().filled()?,
         };
@@ -135,8 +145,10 @@ impl SceneOptions {
             size: options.camera.size()?,
             camera: options.camera.camera()?,
             picture: options.picture.picture(subject.range)?,
+            clip_planes: options.clip.planes().to_vec(),
             sampling: options.sampling.sampling(),
             light: options.picture.light(),
+            gradient: options.picture.gradient()?,
             tone: options.tone.tone(),
         };
         let notes = self.notes(&options, subject);
@@ -222,6 +234,7 @@ impl SceneOptions {
             let (low, high) = (end(filled.low), end(filled.high));
             notes.push(format!("window = {ends} is {low},{high}"));
         }
+        notes.extend(filled.clip.notes(subject));
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {
             let preset = TransferFile::DEFAULT_PRESET;
             notes.push(format!("tf = {preset}: --tf chooses another"));

@@ -93,6 +93,10 @@ numbers! {
     Gamma: "a gamma", "from 0.1 to 10", |v| (0.1..=10.0).contains(&v);
     /// Standard deviation of the Gaussian that smooths the volume, mm; 0 leaves it alone.
     SigmaMm: "a sigma", "from 0 to 1000 mm", |v| (0.0..=1000.0).contains(&v);
+    /// Standard deviation of the Gaussian before gradients are precomputed, in voxels of the
+    /// smallest spacing; 0 for none.
+    SigmaVoxels: "a gradient's sigma", "from 0 to 100 voxels",
+        |v| crate::scene::Precomputed::SIGMAS_VOXELS.contains(&v);
 }
 
 #[cfg(test)]

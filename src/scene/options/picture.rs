@@ -10,11 +10,12 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::gradient::GradientScale;
 use super::group::{Keys, group};
-use super::numbers::{Reflectance, Shininess, Termination};
+use super::numbers::{Reflectance, Shininess, SigmaVoxels, Termination};
 use super::subject::Subject;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
-use super::words::{Mode, Shading, Switch};
+use super::words::{GradientMethod, Mode, Shading, Switch};
 use crate::error::{Error, Result};
 use crate::scene::{Refine, TransferFile};
 
@@ -33,7 +34,7 @@ group! {
         #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
         iso: Threshold,
 
-        /// iso: close the surface where the volume ends [default: on]
+        /// iso: close the surface where the volume ends or is clipped [default: on]
         #[arg(long, value_name = "on|off")]
         caps: Switch,
 
@@ -89,6 +90,21 @@ group! {
         /// headlight, or the world direction toward a distant light [default: headlight]
         #[arg(long, value_name = "headlight|X,Y,Z", allow_hyphen_values = true)]
         light: LightChoice,
+
+        /// iso, shaded dvr: how normals are found: central, forward or fourth-order differences of
+        /// the field, or precomputed: central ones at every N-th voxel, interpolated between
+        /// [default: central]
+        #[arg(long, value_name = "NAME")]
+        gradient: GradientMethod,
+
+        /// Voxels between two precomputed gradients, 1 to 8 [default: 2]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        gradient_scale: GradientScale,
+
+        /// Gaussian smoothing before precomputed gradients: its standard deviation in voxels of the
+        /// smallest spacing [default: 0, none]
+        #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
+        gradient_smooth: SigmaVoxels,
     }
 }
 
@@ -169,9 +185,10 @@ const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
 /// What a shading makes use of.
 const LIGHT: [&str; 5] = ["ambient", "diffuse", "specular", "shininess", "light"];
 const UNLIT: &str = "a projection has no surface to light";
+const NO_NORMALS: &str = "a projection has no normals";
 
 #[rustfmt::skip]
-const BELONGS: [Belongs; 14] = [
+const BELONGS: [Belongs; 17] = [
     Belongs { key: "iso", modes: &[Mode::Iso], why: "only a surface has an iso value" },
     Belongs { key: "caps", modes: &[Mode::Iso], why: "only a surface is closed where the volume ends" },
     Belongs { key: "refine", modes: &[Mode::Iso], why: "only a surface has a hit to refine" },
@@ -186,6 +203,9 @@ const BELONGS: [Belongs; 14] = [
     Belongs { key: "specular", modes: LIT, why: UNLIT },
     Belongs { key: "shininess", modes: LIT, why: UNLIT },
     Belongs { key: "light", modes: LIT, why: UNLIT },
+    Belongs { key: "gradient", modes: LIT, why: NO_NORMALS },
+    Belongs { key: "gradient-scale", modes: LIT, why: NO_NORMALS },
+    Belongs { key: "gradient-smooth", modes: LIT, why: NO_NORMALS },
 ];
 
 impl PictureOptions {
@@ -201,8 +221,10 @@ impl PictureOptions {
     }
 
     /// What of a scene file's picture still applies when these are the flags: another mode drops
-    /// what belongs to the file's mode, no shading drops its light.
+    /// what belongs to the file's mode, no shading drops its light, other gradients than precomputed
+    /// ones what only those use.
     pub(super) fn keep_of(&self, mut file: Self) -> Self {
+        let had_normals = file.has_normals();
         if let Some(mode) = self.mode
             && mode != file.mode()
         {
@@ -224,6 +246,13 @@ impl PictureOptions {
         }
         if self.shading == Some(Shading::None) {
             file = file.unlit();
+        }
+        if had_normals && !self.clone().over(file.clone()).has_normals() {
+            file = file.without_gradient();
+        }
+        let method = self.gradient;
+        if method.is_some_and(|method| method != GradientMethod::Precomputed) {
+            file = file.without_precomputed();
         }
         file
     }
@@ -257,7 +286,7 @@ impl PictureOptions {
             ))
             .hint("choose a shading: phong or blinn-phong"));
         }
-        Ok(())
+        self.check_gradient()
     }
 
     /// With every default of its mode in its place, every value physical, and the transfer

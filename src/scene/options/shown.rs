@@ -13,12 +13,12 @@ impl PictureOptions {
     pub(super) const IVORY: SrgbColor = SrgbColor([0.94, 0.87, 0.76]);
     pub(super) const DEFAULT_TERMINATION: f64 = 0.999;
 
-    /// The shading and light alone, with their defaults in place.
+    /// The shading, light and gradient alone, with their defaults in place.
     pub(super) fn lit(&self) -> Result<Self> {
         let shading = self.shading();
         let only_shading = Self {
             shading: Some(shading),
-            ..Self::default()
+            ..self.differentiated()?
         };
         if shading == Shading::None {
             return Ok(only_shading);

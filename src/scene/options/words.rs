@@ -58,6 +58,18 @@ pub enum Shading {
 }
 words!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "blinn-phong");
 
+/// `--gradient`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GradientMethod {
+    #[default]
+    Central,
+    Forward,
+    FourthOrder,
+    Precomputed,
+}
+words!(GradientMethod, "a gradient": Central = "central", Forward = "forward",
+    FourthOrder = "fourth-order", Precomputed = "precomputed");
+
 /// Something that is on or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Switch {
@@ -110,4 +122,4 @@ words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
     Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
 words!(SamplingMethod, "a sampling": Fixed = "fixed", Exact = "exact");
 
-plain!(Mode, Shading, Switch, NonFiniteRule, View);
+plain!(Mode, Shading, GradientMethod, Switch, NonFiniteRule, View);

@@ -1,0 +1,26 @@
+// Where each ray, its direction per mm, is inside a volume of `sizes` voxels and on the kept side
+// of all of its own clip planes, those from `sizes[i].w` on, `counts[i]` of them: `entry` holds
+// the axis or plane that it enters by and whether it enters by one at all.
+#include "lib/clip.clh"
+
+kernel void clip(uint count, const global uint4 *sizes, const global float4 *planes, const global uint *counts,
+                 const global float4 *origins, const global float4 *dirs,
+                 global float2 *inside, global uint4 *entry)
+{
+    uint i = get_global_id(0);
+    if (i >= count || get_global_id(1) != 0)
+        return;
+    VolumeGrid volume;
+    volume.nx = sizes[i].x;
+    volume.ny = sizes[i].y;
+    volume.nz = sizes[i].z;
+    Ray ray;
+    ray.origin = origins[i].xyz;
+    ray.origin_low = (float3)(0.0f);
+    ray.dir = dirs[i].xyz;
+    ray.dir_low = (float3)(0.0f);
+    Interval found = volume_interval(volume, ray);
+    clip_interval(&found, planes + sizes[i].w, counts[i], ray);
+    inside[i] = (float2)(found.enter, found.exit);
+    entry[i] = (uint4)(found.axis, found.by_face, 0u, 0u);
+}

@@ -1,0 +1,33 @@
+// The field's gradient at each point of a volume of `size` voxels, and the normal made of it by the
+// map of covectors with these rows, which is `fallback` where the gradient vanishes.
+#include "lib/gradient.clh"
+
+kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 row_z,
+#if GRADIENT == GRADIENT_PRECOMPUTED
+                     const global short *directions, uint4 direction_grid,
+#else
+                     const global VOXEL *voxels,
+#endif
+                     const global float4 *points, float4 fallback,
+                     global float4 *gradients, global float4 *normals)
+{
+    uint i = get_global_id(0);
+    if (i >= count || get_global_id(1) != 0)
+        return;
+    VolumeGrid volume;
+    volume.nx = size.x;
+    volume.ny = size.y;
+    volume.nz = size.z;
+    volume.gradient_row_x = row_x;
+    volume.gradient_row_y = row_y;
+    volume.gradient_row_z = row_z;
+    GradientSource source;
+#if GRADIENT == GRADIENT_PRECOMPUTED
+    source.directions = directions;
+    source.grid = direction_grid;
+#else
+    source.voxels = voxels;
+#endif
+    gradients[i] = (float4)(field_gradient(source, volume, points[i].xyz), 0.0f);
+    normals[i] = (float4)(field_normal(source, volume, points[i].xyz, fallback.xyz), 0.0f);
+}

@@ -1,0 +1,242 @@
+//! The adversarial test: rays aimed at the places where a cast loses surfaces, at small random
+//! volumes, every answer held against the reference.
+
+mod draws;
+mod rays;
+mod volumes;
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+use crate::error::Result;
+use crate::extent::ImageSize;
+use crate::frame::{Certificate, Kind};
+use crate::gpu::Device;
+use crate::octree::{Leaf, Octree};
+use crate::progress::Progress;
+use crate::render::{FirstCrossing, RayCaster};
+use crate::scene::{
+    Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
+};
+
+use super::{Judge, Met, Verdict};
+
+pub use rays::{Aim, AimedRay, rays};
+pub use volumes::{Target, target};
+
+use glam::DVec3;
+
+/// Answers of one aim.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    pub rays: u64,
+    /// Of the reference.
+    pub hits: u64,
+    pub missed: u64,
+    pub extra: u64,
+    /// Hits at another place than the reference's, by more than [`Judge::APART_VOXELS`].
+    pub displaced: u64,
+    /// Other answers that are the reference's of a ray within [`Judge::NEAR_VOXELS`].
+    pub borderline: u64,
+    /// Answers that are not proven.
+    pub undecided: u64,
+    /// Answers that are proven and yet not the reference's.
+    pub wrongly_proven: u64,
+    /// Of answers that agree, in voxels.
+    pub most_apart: f64,
+}
+
+impl Tally {
+    /// Answers that are wrong.
+    pub fn wrong(&self) -> u64 {
+        self.missed + self.extra + self.displaced + self.wrongly_proven
+    }
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            hits: self.hits + other.hits,
+            missed: self.missed + other.missed,
+            extra: self.extra + other.extra,
+            displaced: self.displaced + other.displaced,
+            borderline: self.borderline + other.borderline,
+            undecided: self.undecided + other.undecided,
+            wrongly_proven: self.wrongly_proven + other.wrongly_proven,
+            most_apart: self.most_apart.max(other.most_apart),
+        }
+    }
+}
+
+/// The tallies of all aims, and the first rays that went wrong.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// One an aim, in the order of [`Aim::ALL`].
+    pub tallies: [Tally; Aim::ALL.len()],
+    /// For finding the fault: target number, ray, answer, verdict.
+    pub wrong: Vec<String>,
+}
+
+impl Report {
+    /// Kept of the rays that went wrong.
+    const MOST_TOLD: usize = 12;
+
+    pub fn total(&self) -> Tally {
+        self.tallies.into_iter().fold(Tally::default(), Tally::add)
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<12}{:>11}{:>11}{:>8}{:>8}{:>10}{:>11}{:>10}{:>8}{:>10}",
+            "aim",
+            "rays",
+            "hits",
+            "missed",
+            "extra",
+            "displaced",
+            "borderline",
+            "undecided",
+            "false",
+            "voxels"
+        )?;
+        let named = Aim::ALL.into_iter().map(Aim::name).zip(self.tallies);
+        for (name, t) in named.chain([("all", self.total())]) {
+            writeln!(
+                f,
+                "{name:<12}{:>11}{:>11}{:>8}{:>8}{:>10}{:>11}{:>10}{:>8}{:>10.1e}",
+                t.rays,
+                t.hits,
+                t.missed,
+                t.extra,
+                t.displaced,
+                t.borderline,
+                t.undecided,
+                t.wrongly_proven,
+                t.most_apart
+            )?;
+        }
+        self.wrong.iter().try_for_each(|line| writeln!(f, "{line}"))
+    }
+}
+
+/// Rays at one target, before the next is made.
+const RAYS_A_TARGET: usize = 50_000;
+
+/// Casts `count` rays on the device and judges them. Reports a unit of progress a ray.
+///
+/// # Errors
+/// The device fails.
+pub fn run(device: &Device, seed: u64, count: u64, progress: &dyn Progress) -> Result<Report> {
+    let mut report = Report::default();
+    progress.begin("aimed rays", count);
+    let mut caster = RayCaster::new(device);
+    let targets = count.div_ceil(RAYS_A_TARGET as u64);
+    for n in 0..targets {
+        let here = (count - n * RAYS_A_TARGET as u64).min(RAYS_A_TARGET as u64);
+        let target = target(seed, n as u32)?;
+        let octree = Octree::build(&target.volume, Leaf::new(4)?, progress)?;
+        let aimed = rays(&target, seed.wrapping_add(n), here as usize);
+        let pairs: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
+        let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &pairs)?;
+        judge(&target, n, &aimed, &found, &mut report)?;
+        progress.advance(here);
+    }
+    progress.end();
+    Ok(report)
+}
+
+/// Adds the verdicts on one target's rays.
+fn judge(
+    target: &Target,
+    number: u64,
+    aimed: &[AimedRay],
+    found: &[FirstCrossing],
+    report: &mut Report,
+) -> Result<()> {
+    let scene = scene_of(target)?;
+    let judge = Judge::new(&target.volume, &scene)?;
+    let judged: Vec<(Tally, Option<String>)> = aimed
+        .par_iter()
+        .zip(found)
+        .map(|(ray, found)| judge_one(&judge, number, ray, found))
+        .collect();
+    for (ray, (tally, told)) in aimed.iter().zip(judged) {
+        let of = &mut report.tallies[ray.aim as usize];
+        *of = of.add(tally);
+        if report.wrong.len() < Report::MOST_TOLD {
+            report.wrong.extend(told);
+        }
+    }
+    Ok(())
+}
+
+fn judge_one(
+    judge: &Judge,
+    number: u64,
+    aimed: &AimedRay,
+    found: &FirstCrossing,
+) -> (Tally, Option<String>) {
+    let ray = Ray {
+        origin_world: DVec3::from_array(aimed.origin.map(f64::from)),
+        dir_world: DVec3::from_array(aimed.dir.map(f64::from)),
+    };
+    let met = Met {
+        kind: found.kind,
+        depth_mm: f64::from(found.t),
+    };
+    // Rays begin tens of voxels away: so much of a voxel is left of their last digit.
+    let resolution = if found.t.is_finite() {
+        2.0 * f64::from(f32::EPSILON * found.t)
+    } else {
+        0.0
+    };
+    let truth = judge.truth(ray);
+    let verdict = judge.verdict(ray, truth, met, resolution);
+    let proven = match found.certificate {
+        Certificate::Hit => Some(true),
+        Certificate::Miss => Some(false),
+        Certificate::Undecided => None,
+    };
+    let hit = truth.kind != Kind::Nothing;
+    let mut tally = Tally {
+        rays: 1,
+        hits: u64::from(hit),
+        undecided: u64::from(proven.is_none()),
+        wrongly_proven: u64::from(proven.is_some_and(|proven| proven != hit)),
+        ..Tally::default()
+    };
+    match verdict {
+        Verdict::Agrees { apart } => tally.most_apart = apart,
+        Verdict::Borderline => tally.borderline = 1,
+        Verdict::Missed => tally.missed = 1,
+        Verdict::Extra => tally.extra = 1,
+        Verdict::Displaced { .. } => tally.displaced = 1,
+    }
+    let told = (tally.wrong() > 0)
+        .then(|| format!("target {number}, {aimed:?}: {found:?}, {verdict:?}, truth {truth:?}"));
+    (tally, told)
+}
+
+/// What the reference is asked; its camera is not used.
+fn scene_of(target: &Target) -> Result<Scene> {
+    let lens = Lens::Orthographic { height_mm: 1.0 };
+    Ok(Scene {
+        size: ImageSize::new(1, 1)?,
+        camera: Camera::look_at(DVec3::NEG_Y, DVec3::ZERO, DVec3::Z, lens)?,
+        picture: Picture::Surface {
+            iso: target.iso,
+            caps: target.caps,
+            refine: Refine::default(),
+            color: Rgb::BLACK,
+            phong: None,
+        },
+        clip_planes: Vec::new(),
+        sampling: Sampling::default(),
+        light: Light::default(),
+        gradient: Gradient::default(),
+        tone: Tone::default(),
+    })
+}

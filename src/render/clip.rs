@@ -1,0 +1,45 @@
+//! The scene's clip planes on the device.
+
+use glam::DAffine3;
+
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Parameter, input, value};
+use crate::scene::ClipPlane;
+
+/// Beyond any volume, and far from overflow.
+const FARTHEST: f64 = 1e30;
+
+/// Clip planes in index space: each keeps the points where `x·p.x + y·p.y + z·p.z + w ≥ 0`.
+pub struct DeviceClip {
+    pub planes: Buffer<[f32; 4]>,
+    pub count: u32,
+}
+
+impl DeviceClip {
+    /// # Errors
+    /// The device has no room.
+    pub fn upload(
+        device: &Device,
+        planes: &[ClipPlane],
+        world_from_index: DAffine3,
+    ) -> Result<Self> {
+        let in_index = |plane: &ClipPlane| {
+            let (n, offset) = plane.in_space(world_from_index);
+            let offset = offset.clamp(-FARTHEST, FARTHEST);
+            [n.x as f32, n.y as f32, n.z as f32, offset as f32]
+        };
+        let in_index: Vec<[f32; 4]> = planes.iter().map(in_index).collect();
+        Ok(Self {
+            planes: Buffer::upload(device, "clip planes", &in_index)?,
+            count: in_index.len() as u32,
+        })
+    }
+
+    pub fn planes_parameter() -> Parameter {
+        input::<[f32; 4]>("clip_planes")
+    }
+
+    pub fn count_parameter() -> Parameter {
+        value::<u32>("clip_count")
+    }
+}

@@ -1,0 +1,68 @@
+//! Planes that cut the volume open.
+
+use glam::{DAffine3, DVec3};
+
+use crate::error::{Error, Result};
+
+/// A half-space that is kept: the points p (world, mm) with `n·p + d ≥ 0`, those of the plane
+/// itself included. The normal n points to the kept side and has any length (Yuan 2009, §3.4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipPlane {
+    normal_world: DVec3,
+    offset: f64,
+}
+
+impl ClipPlane {
+    /// The most planes of a scene.
+    pub const MOST: usize = 64;
+
+    /// # Errors
+    /// A normal without direction; a number that is not finite.
+    pub fn new(normal_world: DVec3, offset: f64) -> Result<Self> {
+        if !(normal_world.is_finite() && offset.is_finite()) {
+            return Err(Error::usage(
+                "a clip plane's numbers nx,ny,nz,d must be finite",
+            ));
+        }
+        if normal_world == DVec3::ZERO {
+            return Err(Error::usage(
+                "a clip plane's normal 0,0,0 has no direction: nx,ny,nz must point to the side that is kept",
+            ));
+        }
+        Ok(Self {
+            normal_world,
+            offset,
+        })
+    }
+
+    /// n, as it was given.
+    pub fn normal_world(self) -> DVec3 {
+        self.normal_world
+    }
+
+    /// d, as it was given.
+    pub fn offset(self) -> f64 {
+        self.offset
+    }
+
+    /// The unit normal of a cap: away from the kept side.
+    pub fn outward_world(self) -> DVec3 {
+        -self.scaled().0.normalize()
+    }
+
+    /// The plane's n and d in another space, n's largest component ±1. A plane too far away for a
+    /// number is infinitely far, on its own side.
+    pub fn in_space(self, world_from_space: DAffine3) -> (DVec3, f64) {
+        let (normal, offset) = self.scaled();
+        let height = normal.dot(world_from_space.translation) + offset;
+        let normal = world_from_space.matrix3.transpose() * normal;
+        let largest = normal.abs().max_element();
+        (normal / largest, height / largest)
+    }
+
+    /// With n's largest component ±1: no square of it vanishes or overflows.
+    fn scaled(self) -> (DVec3, f64) {
+        let largest = self.normal_world.abs().max_element();
+        (self.normal_world / largest, self.offset / largest)
+    }
+}

@@ -1,0 +1,234 @@
+//! Emission and absorption: cases 16 to 21.
+
+use crate::mutant::{Mutant, kernel};
+use crate::trial::{Seen, is, judge, near};
+
+pub const CASES: &[&str] = &[
+    "homogeneous",
+    "slab",
+    "ramp",
+    "gaussian",
+    "tf-spike",
+    "tf-stairs",
+    "tf-outside",
+    "opaque-step",
+    "faint-4096",
+    "thin-bright-sheet",
+    "false-homogeneous",
+    "anisotropic-1-1-10",
+];
+
+/// How far an opacity may be from its closed form.
+const CLOSED_FORM: f64 = 2e-4;
+
+/// The length in mm of a pixel's path through the volume: by the slabs, in index space.
+fn path_mm(seen: &Seen, pixel: usize) -> f64 {
+    let ray = seen.ray(pixel);
+    let index = seen.volume.geometry().index_from_world();
+    let origin = index.transform_point3(ray.origin_world);
+    let dir = index.matrix3 * ray.dir_world;
+    let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
+    for (axis, (low, high)) in seen.volume.dims().domain().into_iter().enumerate() {
+        let (a, b) = (
+            (low - origin[axis]) / dir[axis],
+            (high - origin[axis]) / dir[axis],
+        );
+        enter = enter.max(a.min(b));
+        exit = exit.min(a.max(b));
+    }
+    (exit - enter).max(0.0)
+}
+
+/// ∫ −ln(1 − a x) dx over x from 0 to 1: the optical depth of a mm in which the opacity rises from 0
+/// to `a` a mm.
+fn rising(a: f64) -> f64 {
+    ((1.0 - a) * (-a).ln_1p() + a) / a
+}
+
+fn opacity(optical_depth: f64) -> f64 {
+    -(-optical_depth).exp_m1()
+}
+
+/// Opacity along x, of the scene without a name.
+fn along_x(seen: &Seen, optical_depth: f64) -> Vec<String> {
+    if seen.pixels() > 1 {
+        return Vec::new();
+    }
+    near(
+        "the opacity",
+        seen.alpha(0),
+        opacity(optical_depth),
+        CLOSED_FORM,
+    )
+}
+
+/// Of a medium of opacity 0.03 each 2 mm.
+fn constant_medium(seen: &Seen) -> Vec<String> {
+    let mut lines = Vec::new();
+    for pixel in 0..seen.pixels() {
+        let expected = opacity(-(1.0_f64 - 0.03).ln() / 2.0 * path_mm(seen, pixel));
+        lines.extend(near(
+            &format!("the opacity of pixel {pixel}"),
+            seen.alpha(pixel),
+            expected,
+            1e-5,
+        ));
+    }
+    lines.truncate(3);
+    lines
+}
+
+/// Opacities taken for those of a fixed step.
+const NO_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
+
+/// Sums without compensation, and opacities without log1p.
+const LOST_DIGITS: Mutant = kernel(
+    "lib/transfer.clh",
+    &[("-log1p(-opacity)", "-log(1.0f - opacity)")],
+);
+
+#[test]
+fn homogeneous() {
+    judge(
+        "emission::homogeneous",
+        "homogeneous",
+        constant_medium,
+        &[NO_LENGTH],
+    );
+}
+
+#[test]
+fn slab() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        along_x(seen, -8.0 * 0.7_f64.ln() + 4.0 * rising(0.3))
+    }
+    judge("emission::slab", "slab", truth, &[NO_LENGTH]);
+}
+
+#[test]
+fn ramp() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        along_x(seen, 64.0 * rising(0.95) / 40.0)
+    }
+    judge("emission::ramp", "ramp", truth, &[NO_LENGTH]);
+}
+
+#[test]
+fn gaussian() {
+    judge(
+        "emission::gaussian",
+        "gaussian",
+        |_| Vec::new(),
+        &[NO_LENGTH],
+    );
+}
+
+#[test]
+fn tf_spike() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        along_x(seen, 0.1 * rising(0.9))
+    }
+    judge("emission::tf_spike", "tf-spike", truth, &[]);
+}
+
+#[test]
+fn tf_stairs() {
+    judge(
+        "emission::tf_stairs",
+        "tf-stairs",
+        |_| Vec::new(),
+        &[NO_LENGTH],
+    );
+}
+
+#[test]
+fn tf_outside() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        let most = (0..seen.pixels())
+            .map(|pixel| seen.alpha(pixel))
+            .fold(0.0, f64::max);
+        match seen.name {
+            "transparent" | "clear-point" | "above" => near("the largest opacity", most, 0.0, 0.0),
+            "opaque" => near("the largest opacity", most, 1.0, 1e-6),
+            // Of opacity 0.2 each 4 mm.
+            _ => {
+                let middle = seen.middle();
+                let expected = opacity(-(0.8_f64).ln() / 4.0 * path_mm(seen, middle));
+                near(
+                    "the opacity in the middle",
+                    seen.alpha(middle),
+                    expected,
+                    1e-5,
+                )
+            }
+        }
+    }
+    judge("emission::tf_outside", "tf-outside", truth, &[]);
+}
+
+#[test]
+fn opaque_step() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        let mut lines = Vec::new();
+        for pixel in 0..seen.pixels() {
+            // But for rays that only touch the volume.
+            if path_mm(seen, pixel) > 1e-3 {
+                lines.extend(near("the opacity", seen.alpha(pixel), 1.0, 1e-6));
+            }
+        }
+        lines.truncate(3);
+        lines.extend(is("something is seen", seen.alpha(seen.middle()) > 0.9));
+        lines
+    }
+    judge("emission::opaque_step", "opaque-step", truth, &[]);
+}
+
+#[test]
+fn faint_4096() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        let expected = opacity(-4096.0 * (-1e-6_f64).ln_1p());
+        near(
+            "the opacity over the exact one",
+            seen.alpha(0) / expected,
+            1.0,
+            1e-4,
+        )
+    }
+    judge("emission::faint_4096", "faint-4096", truth, &[LOST_DIGITS]);
+}
+
+#[test]
+fn thin_bright_sheet() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        along_x(seen, 110.0 / 255.0 * rising(0.5))
+    }
+    judge(
+        "emission::thin_bright_sheet",
+        "thin-bright-sheet",
+        truth,
+        &[],
+    );
+}
+
+#[test]
+fn false_homogeneous() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        along_x(seen, -14.4 * 0.5_f64.ln() + 3.2 * rising(0.5))
+    }
+    judge(
+        "emission::false_homogeneous",
+        "false-homogeneous",
+        truth,
+        &[],
+    );
+}
+
+#[test]
+fn anisotropic_1_1_10() {
+    judge(
+        "emission::anisotropic_1_1_10",
+        "anisotropic-1-1-10",
+        constant_medium,
+        &[NO_LENGTH],
+    );
+}

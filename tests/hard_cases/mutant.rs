@@ -1,0 +1,84 @@
+//! Wrong changes on purpose. One in a kernel is tried in a process of its own, which reads its
+//! kernels from a changed copy.
+
+use std::path::Path;
+use std::process::Command;
+
+use angioray::scene::Scene;
+use angioray::volume::Volume;
+
+/// A change that a case must catch.
+pub enum Mutant {
+    /// In a kernel file: each text must be there exactly once, and is replaced by the other.
+    Kernel {
+        file: &'static str,
+        changes: &'static [(&'static str, &'static str)],
+    },
+    /// In the scene as the device gets it.
+    Scene(fn(&mut Scene)),
+    /// In the volume as the device gets it.
+    Volume(fn(&Volume) -> Volume),
+    /// In the volume from which the device's octree is built.
+    Octree(fn(&Volume) -> Volume),
+}
+
+/// One change in one kernel file.
+pub const fn kernel(
+    file: &'static str,
+    changes: &'static [(&'static str, &'static str)],
+) -> Mutant {
+    Mutant::Kernel { file, changes }
+}
+
+/// Says to a process that its kernels are wrong.
+const MUTANT: &str = "ANGIORAY_TEST_MUTANT";
+/// What a process prints whose limits are broken.
+pub const CAUGHT: &str = "limits are broken";
+
+/// Whether this process tries a mutant.
+pub fn is_mutant() -> bool {
+    std::env::var_os(MUTANT).is_some()
+}
+
+/// Runs the test `name` of this program with a kernel changed, and asserts that it fails because of
+/// its limits.
+pub fn assert_caught(name: &str, file: &str, changes: &[(&str, &str)]) {
+    let folder = tempfile::tempdir().unwrap();
+    copy_with(folder.path(), file, changes);
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args([name, "--exact", "--nocapture", "--test-threads=1"])
+        .env(MUTANT, "1")
+        .env("ANGIORAY_KERNELS", folder.path())
+        .output()
+        .unwrap();
+    let said = [output.stdout, output.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert!(
+        said.contains("running 1 test"),
+        "there is no test {name}: {said}"
+    );
+    assert!(
+        !output.status.success() && said.contains(CAUGHT),
+        "{name} does not catch {changes:?} in {file}: {said}"
+    );
+    let first = said.lines().find(|line| line.contains(CAUGHT));
+    println!("caught {changes:?}: {}", first.unwrap_or_default());
+}
+
+/// A copy of the kernels with one file changed.
+fn copy_with(folder: &Path, file: &str, changes: &[(&str, &str)]) {
+    let kernels = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
+    for part in ["lib", "pass", "test"] {
+        std::fs::create_dir(folder.join(part)).unwrap();
+        for entry in std::fs::read_dir(kernels.join(part)).unwrap() {
+            let entry = entry.unwrap();
+            std::fs::copy(entry.path(), folder.join(part).join(entry.file_name())).unwrap();
+        }
+    }
+    let mut text = std::fs::read_to_string(folder.join(file)).unwrap();
+    for (right, wrong) in changes {
+        assert_eq!(text.matches(right).count(), 1, "{file}: {right}");
+        text = text.replace(right, wrong);
+    }
+    std::fs::write(folder.join(file), text).unwrap();
+}

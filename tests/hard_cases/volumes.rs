@@ -1,0 +1,237 @@
+//! Volumes: cases 22 to 26.
+
+use angioray::frame::Wanted;
+use angioray::octree::{Leaf, Octree};
+use angioray::progress::Silent;
+use angioray::render::{Options, Renderer};
+use angioray::volume::{
+    Geometry, HardCase, NonFinite, ReadOptions, Rescale, Volume, Voxels, orientation_of, read,
+};
+use glam::{DMat3, DVec3};
+
+use crate::common::Figure::{ColorMean, DepthMean, Kind, NormalMean};
+use crate::common::{self, Figure};
+use crate::mutant::{Mutant, assert_caught, is_mutant, kernel};
+use crate::trial::{Seen, is, judge, near, resolved};
+
+pub const CASES: &[&str] = &[
+    "sizes",
+    "constant",
+    "types",
+    "non-finite",
+    "orientations",
+    "wide-index",
+    "clip-planes",
+];
+
+/// Like `volume`, with other voxels.
+fn with_voxels(volume: &Volume, voxels: Vec<f32>) -> Volume {
+    let (dims, geometry) = (volume.dims(), *volume.geometry());
+    Volume::new(
+        dims,
+        Voxels::from(voxels),
+        geometry,
+        Rescale::IDENTITY,
+        NonFinite::Refuse,
+    )
+    .unwrap()
+}
+
+#[test]
+fn sizes() {
+    // An axis with one voxel has no extent.
+    let flat = kernel(
+        "lib/ray.clh",
+        &[
+            ("return n == 1u ? -0.5f : 0.0f;", "return 0.0f;"),
+            (
+                "return n == 1u ? 0.5f : (float)(n - 1u);",
+                "return (float)(n - 1u);",
+            ),
+        ],
+    );
+    judge("volumes::sizes", "sizes", |_| Vec::new(), &[flat]);
+}
+
+#[test]
+fn constant() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        let caps = (0..seen.pixels())
+            .filter(|&pixel| seen.kind(pixel) == 2)
+            .count();
+        match seen.name {
+            "iso77" => is("the volume is closed by caps", caps > 50),
+            "mip" => near("the maximum", seen.value(seen.middle()), 77.0, 0.0),
+            _ => is("nothing is hit", seen.hits() == 0),
+        }
+    }
+    let never_above = kernel(
+        "lib/crossing.clh",
+        &[(
+            "value = class == CLASS_ABOVE ? 1.0f : -1.0f;",
+            "value = -1.0f;",
+        )],
+    );
+    judge("volumes::constant", "constant", truth, &[never_above]);
+}
+
+#[test]
+fn types() {
+    // Voxels cut to eight bits: a byte's type for all.
+    let eight_bits = kernel(
+        "lib/field.clh",
+        &[("return (float)voxels[", "return (float)(uchar)voxels[")],
+    );
+    judge("volumes::types", "types", |_| Vec::new(), &[eight_bits]);
+}
+
+/// Their files, written as `angioray phantom` does, give the volumes they are said to give.
+#[test]
+fn files_of_all_types_are_read_as_they_should_be() {
+    if is_mutant() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut compared = 0;
+    for name in ["types", "non-finite", "orientations"] {
+        let (case, _) = HardCase::named(name).unwrap();
+        for member in 0..case.count() {
+            let made = case.volume(member).unwrap();
+            let path = folder.path().join(format!("{name}-{member}.nrrd"));
+            made.write(&path, member % 2 == 1).unwrap();
+            let found = read(&path, &ReadOptions::default(), &Silent).unwrap();
+            assert_eq!(found.dims(), made.volume.dims());
+            assert_eq!(
+                found.non_finite(),
+                made.volume.non_finite(),
+                "{name} {member}"
+            );
+            let physical =
+                |volume: &Volume, i: usize| volume.rescale().physical(volume.voxels().stored(i));
+            for i in 0..found.voxels().len() {
+                let (a, b) = (physical(&found, i), physical(&made.volume, i));
+                assert!((a - b).abs() <= 1e-7 * b.abs(), "{name} {member}: {a} {b}");
+                compared += usize::from(a != 0.0);
+            }
+        }
+    }
+    assert!(compared > 10_000, "{compared}");
+}
+
+#[test]
+fn non_finite() {
+    fn truth(seen: &Seen) -> Vec<String> {
+        let lowest = seen.volume.range().min;
+        let mut lines = is("17 voxels are counted", seen.volume.non_finite() == 17);
+        lines.extend(is("they are the smallest finite value", lowest < -40.0));
+        lines
+    }
+    // Read as 0.
+    let as_zero = Mutant::Volume(|volume| {
+        let lowest = volume.range().min;
+        let rescale = volume.rescale();
+        let voxels = (0..volume.voxels().len()).map(|i| {
+            let value = rescale.physical(volume.voxels().stored(i));
+            if value == lowest { 0.0 } else { value as f32 }
+        });
+        with_voxels(volume, voxels.collect())
+    });
+    judge("volumes::non_finite", "non-finite", truth, &[as_zero]);
+}
+
+/// What two pictures of the same content may differ by: rounding.
+const SAME: [(Figure, f64); 4] = [
+    (Kind, 0.0),
+    (DepthMean, 1e-3),
+    (NormalMean, 0.01),
+    (ColorMean, 1e-4),
+];
+
+/// All 48 give the picture of the first; with a geometry that does not tell how they are stored,
+/// none but the first does.
+#[test]
+fn orientations() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let (case, _) = HardCase::named("orientations").unwrap();
+    let first = case.volume(0).unwrap().volume;
+    let (_, scene) = &resolved(case, 0, &first)[0];
+    let frame = |volume: &Volume| {
+        let octree = Octree::build(volume, Leaf::default(), &Silent).unwrap();
+        let mut renderer = Renderer::new(&device, volume, &octree, Options::default()).unwrap();
+        renderer.render(scene, Wanted::ALL).unwrap().frame
+    };
+    let expected = frame(&first);
+    let differs = |volume: &Volume| {
+        let frame = frame(volume);
+        let above =
+            |&&(figure, limit): &&(Figure, f64)| figure.of(&expected, &frame, &first) > limit;
+        SAME.iter().find(above).map(|(figure, _)| *figure)
+    };
+    for member in 0..case.count() {
+        let stored = case.volume(member).unwrap().volume;
+        assert_eq!(
+            differs(&stored),
+            None,
+            "orientation {:?}",
+            orientation_of(member)
+        );
+        if member % 7 == 1 {
+            let untold = Geometry::new(
+                DVec3::new(3.0, -4.0, 5.0),
+                DMat3::IDENTITY,
+                stored.geometry().spacing_mm(),
+            );
+            let Voxels::U8(voxels) = stored.voxels() else {
+                panic!("made as u8");
+            };
+            let voxels = Voxels::from(voxels.to_vec());
+            let untold = Volume::new(
+                stored.dims(),
+                voxels,
+                untold.unwrap(),
+                Rescale::IDENTITY,
+                NonFinite::Refuse,
+            );
+            assert!(
+                differs(&untold.unwrap()).is_some(),
+                "orientation {member} untold"
+            );
+        }
+    }
+}
+
+/// The linear index of a voxel.
+const INDEX: &str = "voxels[((INDEX)z * volume.ny + y) * volume.nx + x]";
+
+#[test]
+fn wide_index() {
+    let sixteen_bits = kernel(
+        "lib/field.clh",
+        &[(
+            INDEX,
+            "voxels[(ushort)(((INDEX)z * volume.ny + y) * volume.nx + x)]",
+        )],
+    );
+    judge(
+        "volumes::wide_index",
+        "wide-index",
+        |_| Vec::new(),
+        &[sixteen_bits],
+    );
+    if is_mutant() {
+        return;
+    }
+    // The control the other way: an index of 64 bits is not caught.
+    let sixty_four = [(INDEX, "voxels[((ulong)z * volume.ny + y) * volume.nx + x]")];
+    let caught = std::panic::catch_unwind(|| {
+        assert_caught("volumes::wide_index", "lib/field.clh", &sixty_four);
+    });
+    assert!(caught.is_err(), "64 bits change the picture");
+}
+
+#[test]
+fn clip_planes() {
+    judge("volumes::clip_planes", "clip-planes", |_| Vec::new(), &[]);
+}

@@ -6,6 +6,7 @@
 pub mod aimed;
 mod borderline;
 mod compare;
+pub mod convergence;
 mod effort;
 mod experiments;
 mod interleaved;

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::scene::{Knot, Picture, Rgb, Scene, SceneOptions, Subject, TransferFunction};
+use crate::scene::{Emission, Knot, Picture, Rgb, Scene, SceneOptions, Subject, TransferFunction};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };
@@ -72,9 +72,7 @@ impl Specimen {
         let transfer =
             TransferFunction::new(vec![knot(self.iso, 0.0), knot(most, 0.5)], unit_length_mm)?;
         let mut scene = self.scene(side_px, "mode = 'dvr'\n")?;
-        if let Picture::Emission { transfer: of, .. } = &mut scene.picture {
-            *of = transfer;
-        }
+        scene.picture = Picture::Emission(Emission::of(transfer));
         Ok(scene)
     }
 

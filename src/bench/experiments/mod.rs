@@ -1,5 +1,6 @@
 //! The experiments, a file each.
 
+mod convergence;
 mod gradients;
 mod rays;
 mod traversals;
@@ -11,6 +12,7 @@ use super::Experiment;
 pub const EXPERIMENTS: &[Experiment] = &[
     vessels::EXPERIMENT,
     traversals::EXPERIMENT,
+    convergence::EXPERIMENT,
     rays::EXPERIMENT,
     gradients::EXPERIMENT,
 ];

@@ -12,7 +12,7 @@ use angioray::frame::{Frame, Wanted};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Picture, Projection, Refine, Rgb, Scene, TransferFile, Window};
+use angioray::scene::{Emission, Picture, Projection, Refine, Rgb, Scene, TransferFile, Window};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 
 const SIZE_PX: u32 = 256;
@@ -107,11 +107,9 @@ impl Judge<'_> {
     /// The largest colour error under the default transfer function at step 0.25.
     fn emission(&mut self) -> f64 {
         let preset = TransferFile::named(TransferFile::DEFAULT_PRESET).unwrap();
-        let picture = Picture::Emission {
-            transfer: preset.transfer_function(self.volume.range()).unwrap(),
-            phong: None,
-            termination: 0.999,
-        };
+        let picture = Picture::Emission(Emission::of(
+            preset.transfer_function(self.volume.range()).unwrap(),
+        ));
         let mut scene = self.scene(picture, 0.25);
         let truth = self.truth(&scene);
         let mut error = |scene: &Scene| color_error(&truth, &self.frame(scene)).unwrap().max;

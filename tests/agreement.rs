@@ -7,8 +7,8 @@ mod common;
 use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
-    Camera, ClipPlane, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection, Reflection,
-    Rgb, Scene, Tone, TransferFunction, Window,
+    Camera, ClipPlane, Emission, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection,
+    Reflection, Rgb, Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -315,11 +315,11 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
             ];
             let unit_mm = 2.0 * volume.geometry().smallest_spacing_mm();
             let transfer = TransferFunction::new(knots, unit_mm).unwrap();
-            Picture::Emission {
-                transfer,
+            Picture::Emission(Emission {
                 phong,
                 termination: 1.0,
-            }
+                ..Emission::of(transfer)
+            })
         }
     }
 }

@@ -8,8 +8,8 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    ClipPlane, Filter, Knot, Phong, Picture, Projection, Refine, Rgb, SamplingMethod,
-    TransferFunction, Traverse, Window,
+    ClipPlane, Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod,
+    Refine, Rgb, SamplingMethod, TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
@@ -66,10 +66,12 @@ fn pictures(range_max: f64) -> Vec<Picture> {
         1.0,
     )
     .unwrap();
-    let emission = |phong| Picture::Emission {
-        transfer: transfer.clone(),
-        phong,
-        termination: 0.99,
+    let emission = |phong| {
+        Picture::Emission(Emission {
+            phong,
+            termination: 0.99,
+            ..Emission::of(transfer.clone())
+        })
     };
     let projection = |of| Picture::Projection { of, window };
     vec![
@@ -180,6 +182,64 @@ fn skipping_and_traversal_never_change_a_bit() {
             nodes_told.dedup();
             let all = nodes_told.len() == Traverse::ALL.len();
             assert!(all || name != "tubes", "{name} leaf {leaf}");
+        }
+    }
+}
+
+/// Every rule for the light along a ray, each filter, on tubes with a spike of a transfer function.
+#[test]
+fn skipping_never_changes_a_bit_under_any_quadrature() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let knot = |value: f64, opacity: f64| Knot {
+        value,
+        color: Rgb([0.9, opacity, 0.2]),
+        opacity,
+    };
+    let knots = [
+        (40.0, 0.0),
+        (90.0, 0.2),
+        (91.0, 0.9),
+        (92.0, 0.1),
+        (150.0, 0.4),
+    ];
+    let knots = knots.map(|(value, opacity)| knot(value, opacity)).to_vec();
+    let transfer = TransferFunction::new(knots, 2.0).unwrap();
+    let volume = tubes();
+    let octree = common::octree(&volume);
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    for method in QuadratureMethod::ALL {
+        for filter in [Filter::Linear, Filter::Nearest] {
+            let mut render = |skip, traverse| {
+                let picture = Picture::Emission(Emission {
+                    quadrature: Quadrature::of(method),
+                    ..Emission::of(transfer.clone())
+                });
+                let mut scene = common::scene(&volume, SIZE_PX, picture);
+                scene.sampling.filter = filter;
+                scene.sampling.skip = skip;
+                scene.sampling.traverse = traverse;
+                renderer.render(&scene, Wanted::ALL).unwrap().frame
+            };
+            let whole = render(false, Traverse::Uniform);
+            assert!(whole.color.iter().any(|c| c[3] > 0.1), "{method}");
+            for traverse in [
+                Traverse::Uniform,
+                Traverse::KdRestart,
+                Traverse::Hierarchical,
+            ] {
+                let skipped = render(true, traverse);
+                let what = format!("{method} {filter:?} {traverse:?}");
+                assert!(picture_bits(&skipped) == picture_bits(&whole), "{what}");
+                assert!(total(&skipped.nodes) > 0, "{what}");
+                // The adaptive rule asks each cell itself.
+                let stepped = method != QuadratureMethod::Adaptive;
+                assert!(
+                    !stepped || total(&skipped.steps) < total(&whole.steps),
+                    "{what}"
+                );
+            }
         }
     }
 }

@@ -279,7 +279,13 @@ fn the_switches_are_read_from_the_kernels() {
     );
     assert_eq!(
         of("pass/cast_emission.cl"),
-        named(&[("COUNTERS", 2), ("GRADIENT", 4), ("SHADED", 2)])
+        named(&[
+            ("COUNTERS", 2),
+            ("GRADIENT", 4),
+            ("HOMOGENEOUS", 2),
+            ("QUADRATURE", 6),
+            ("SHADED", 2)
+        ])
     );
     assert_eq!(of("pass/surface_normal.cl"), named(&[("GRADIENT", 4)]));
     assert_eq!(of("pass/shade_surface.cl"), named(&[("SHADED", 2)]));

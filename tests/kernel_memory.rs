@@ -116,7 +116,7 @@ impl Under {
     }
 }
 
-const MODES: [&str; 17] = [
+const MODES: [&str; 22] = [
     "--mode iso --iso 40% --shading phong",
     "--mode iso --iso 40% --shading none --refine newton:4 --traverse kd-restart",
     "--mode iso --iso 40% --clip-plane -0.3,1,0.2,-1 --clip-plane 1,0,0,-0.2",
@@ -134,6 +134,11 @@ const MODES: [&str; 17] = [
     "--mode iso --iso 40% --gradient fourth-order",
     "--mode dvr --shading phong --gradient precomputed --gradient-scale 8 --gradient-smooth 1",
     "--mode mip --clip-plane -0.3,1,0.2,-1",
+    "--mode dvr --quad riemann --traverse uniform",
+    "--mode dvr --quad romberg --homogeneity 0.5",
+    "--mode dvr --quad rk4 --homogeneity 0.5 --homogeneity-rule range --skip off",
+    "--mode dvr --quad preintegrated --shading phong",
+    "--mode dvr --quad adaptive:0.01 --shading phong",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.

@@ -6,7 +6,7 @@ mod common;
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::Frame;
 use angioray::scene::{
-    Camera, Knot, Lens, Orientation, Phong, Picture, Projection, Refine, Rgb, Scene,
+    Camera, Emission, Knot, Lens, Orientation, Phong, Picture, Projection, Refine, Rgb, Scene,
     TransferFunction, View, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
@@ -67,11 +67,10 @@ fn pictures(unit_mm: f64) -> [Picture; 3] {
             of: Projection::Maximum,
             window: Window::new(0.0, 255.0).unwrap(),
         },
-        Picture::Emission {
-            transfer: knots(60.0, 220.0, 0.4, unit_mm),
-            phong: None,
+        Picture::Emission(Emission {
             termination: 1.0,
-        },
+            ..Emission::of(knots(60.0, 220.0, 0.4, unit_mm))
+        }),
     ]
 }
 
@@ -360,11 +359,10 @@ fn opacity_along(
     let lens = Lens::Orthographic { height_mm: 1e-3 };
     let eye = center + toward_eye * (2.0 * radius_mm);
     let scene = |&step_voxels: &f64| {
-        let picture = Picture::Emission {
-            transfer: transfer.clone(),
-            phong: None,
+        let picture = Picture::Emission(Emission {
             termination: 1.0,
-        };
+            ..Emission::of(transfer.clone())
+        });
         let mut scene = common::scene(volume, 1, picture);
         scene.size = ImageSize::new(1, 1).unwrap();
         scene.camera = Camera::look_at(eye, center, up, lens).unwrap();

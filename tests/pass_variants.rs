@@ -12,12 +12,13 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Filter, Gradient, Knot, Phong, Picture, Precomputed, Projection, Refine, Rgb, TransferFunction,
-    Window,
+    Emission, Filter, Gradient, Homogeneity, HomogeneityRule, Knot, Phong, Picture, Precomputed,
+    Projection, Quadrature, QuadratureMethod, Refine, Rgb, TransferFunction, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
 
+/// With the default quadrature.
 fn pictures() -> Vec<Picture> {
     let window = Window::new(0.0, 4.0).unwrap();
     let transfer = TransferFunction::new(
@@ -38,11 +39,11 @@ fn pictures() -> Vec<Picture> {
             color: Rgb([1.0; 3]),
             phong,
         });
-        pictures.push(Picture::Emission {
-            transfer: transfer.clone(),
+        pictures.push(Picture::Emission(Emission {
             phong,
             termination: 0.99,
-        });
+            ..Emission::of(transfer.clone())
+        }));
     }
     for of in [
         Projection::Maximum,
@@ -54,9 +55,44 @@ fn pictures() -> Vec<Picture> {
     pictures
 }
 
+/// Emission under every quadrature, shaded and not, and with homogeneous leaves.
+fn emissions() -> Vec<Picture> {
+    let knot = Knot {
+        value: 1.0,
+        color: Rgb([1.0; 3]),
+        opacity: 0.5,
+    };
+    let plain = Emission::of(TransferFunction::new(vec![knot], 1.0).unwrap());
+    let homogeneity = Homogeneity {
+        rule: HomogeneityRule::Optical,
+        limit: 0.1,
+    };
+    let mut emissions = Vec::new();
+    for method in QuadratureMethod::ALL {
+        let quadrature = Quadrature::of(method);
+        let mut push = |phong, homogeneity| {
+            emissions.push(Picture::Emission(Emission {
+                phong,
+                quadrature,
+                homogeneity,
+                ..plain.clone()
+            }));
+        };
+        push(None, None);
+        push(Some(Phong::default()), None);
+        if quadrature.is_stepped() {
+            push(None, Some(homogeneity));
+        }
+    }
+    emissions
+}
+
 /// Every picture with central differences for each of the outputs; those that shade with the other
 /// gradients too, for the last of them.
-fn views(outputs: &[Wanted]) -> Vec<(Picture, Gradient, &[Wanted])> {
+fn views<'a>(
+    pictures: &[Picture],
+    outputs: &'a [Wanted],
+) -> Vec<(Picture, Gradient, &'a [Wanted])> {
     let last = &outputs[outputs.len() - 1..];
     let others = [
         Gradient::Forward,
@@ -64,9 +100,10 @@ fn views(outputs: &[Wanted]) -> Vec<(Picture, Gradient, &[Wanted])> {
         Gradient::Precomputed(Precomputed::default()),
     ];
     let mut all = Vec::new();
-    for picture in pictures() {
-        let is_shaded = match &picture {
-            Picture::Surface { phong, .. } | Picture::Emission { phong, .. } => phong.is_some(),
+    for picture in pictures {
+        let is_shaded = match picture {
+            Picture::Surface { phong, .. } => phong.is_some(),
+            Picture::Emission(emission) => emission.phong.is_some(),
             Picture::Projection { .. } => false,
         };
         all.push((picture.clone(), Gradient::Central, outputs));
@@ -91,9 +128,10 @@ fn counters_alone() -> Wanted {
     }
 }
 
-/// Builds and runs every pass of every picture for one voxel type, with these filters and planes;
+/// Builds and runs every pass of these pictures for one voxel type, with these filters and planes;
 /// counts the launches.
 fn launches<T>(
+    pictures: &[Picture],
     leaf: Leaf,
     filters: &[Filter],
     outputs: &[Wanted],
@@ -109,7 +147,7 @@ where
     let octree = Octree::build(&volume, leaf, &Silent).unwrap();
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let mut launches = 0;
-    for (picture, gradient, outputs) in views(outputs) {
+    for (picture, gradient, outputs) in views(pictures, outputs) {
         for &filter in filters {
             for &wanted in outputs {
                 let mut scene = common::scene(&volume, 8, picture.clone());
@@ -145,7 +183,7 @@ where
     Voxels: From<Vec<T>>,
 {
     let outputs = [Wanted::default(), Wanted::ALL];
-    launches(Leaf::default(), &FILTERS, &outputs, voxel)
+    launches(&pictures(), Leaf::default(), &FILTERS, &outputs, voxel)
 }
 
 #[test]
@@ -157,14 +195,29 @@ fn u8_variants_build() {
 fn u8_variants_build_with_either_output_alone() {
     let outputs = [layers_alone(), counters_alone()];
     let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(Leaf::default(), &[Filter::Linear], &outputs, sum) > 0);
+    assert!(
+        launches(
+            &pictures(),
+            Leaf::default(),
+            &[Filter::Linear],
+            &outputs,
+            sum
+        ) > 0
+    );
 }
 
 #[test]
 fn u8_variants_build_with_a_leaf_of_five_cells() {
     let leaf = Leaf::new(5).unwrap();
     let sum = |x, y, z| (x + y + z) as u8;
-    assert!(launches(leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
+    assert!(launches(&pictures(), leaf, &[Filter::Linear], &[Wanted::ALL], sum) > 0);
+}
+
+#[test]
+fn u8_variants_of_every_quadrature_build() {
+    let outputs = [Wanted::default(), Wanted::ALL];
+    let sum = |x, y, z| (x + y + z) as u8;
+    assert!(launches(&emissions(), Leaf::default(), &FILTERS, &outputs, sum) > 0);
 }
 
 #[test]

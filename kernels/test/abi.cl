@@ -77,7 +77,8 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, least_transmission);
         layout[n++] = OFFSET(EmissionCast, knots);
         layout[n++] = OFFSET(EmissionCast, traverse);
-        layout[n++] = OFFSET(EmissionCast, pad);
+        layout[n++] = OFFSET(EmissionCast, bound);
+        layout[n++] = OFFSET(EmissionCast, color_spread);
     }
     {
         Shading value;

@@ -109,6 +109,8 @@ pub struct Rendered {
     /// Where gradients were precomputed.
     pub gradients: Option<GradientFigures>,
     pub device_bytes: u64,
+    /// From host to device.
+    pub uploaded_bytes: u64,
 }
 
 impl Engine {
@@ -160,6 +162,7 @@ impl Engine {
                     },
                     times_ms: Times {
                         octree: octree_ms,
+                        classify: rendering.classify_ms,
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,
                         render: rendering.render_ms,
@@ -176,6 +179,7 @@ impl Engine {
                         .collect(),
                     gradients: rendering.gradients,
                     device_bytes: rendering.device_bytes,
+                    uploaded_bytes: rendering.uploaded_bytes,
                 })
             }
         }
@@ -208,5 +212,6 @@ fn by_reference(
         }],
         gradients: None,
         device_bytes: 0,
+        uploaded_bytes: 0,
     })
 }

@@ -118,6 +118,7 @@ impl RenderArguments {
             memory: Memory::now(
                 rendered.device_bytes,
                 rendered.gradients.map_or(0, |figures| figures.bytes),
+                rendered.uploaded_bytes,
             ),
         };
         stats.write(path)

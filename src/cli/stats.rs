@@ -70,6 +70,8 @@ pub struct Times {
     pub read: f64,
     pub smooth: f64,
     pub octree: f64,
+    /// Telling from the octree what can be left out.
+    pub classify: f64,
     /// Kernel compilation.
     pub build: f64,
     pub upload: f64,
@@ -105,7 +107,7 @@ impl Counts {
             counts.map(|&n| u64::from(n)).sum()
         };
         let hits = match picture {
-            Picture::Emission { .. } => frame.color.iter().filter(|c| c[3] > 0.0).count(),
+            Picture::Emission(_) => frame.color.iter().filter(|c| c[3] > 0.0).count(),
             _ => frame
                 .kind
                 .iter()
@@ -130,14 +132,17 @@ pub struct Memory {
     pub device_bytes: u64,
     /// Of these, precomputed gradients.
     pub gradient_bytes: u64,
+    /// From host to device.
+    pub uploaded_bytes: u64,
 }
 
 impl Memory {
-    pub fn now(device_bytes: u64, gradient_bytes: u64) -> Self {
+    pub fn now(device_bytes: u64, gradient_bytes: u64, uploaded_bytes: u64) -> Self {
         Self {
             host_peak_bytes: host_peak_bytes(),
             device_bytes,
             gradient_bytes,
+            uploaded_bytes,
         }
     }
 }

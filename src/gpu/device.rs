@@ -2,6 +2,7 @@
 
 use std::ffi::CString;
 use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use ocl::core::{
     self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId,
@@ -52,6 +53,7 @@ pub struct Device {
     device_id: DeviceId,
     context: Context,
     queue: CommandQueue,
+    uploaded_bytes: AtomicU64,
 }
 
 impl Device {
@@ -114,11 +116,22 @@ impl Device {
             device_id,
             context,
             queue,
+            uploaded_bytes: AtomicU64::new(0),
         })
     }
 
     pub fn info(&self) -> &DeviceInfo {
         &self.info
+    }
+
+    /// Copied to the device since it was opened.
+    pub fn uploaded_bytes(&self) -> u64 {
+        self.uploaded_bytes.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn count_upload(&self, bytes: usize) {
+        self.uploaded_bytes
+            .fetch_add(bytes as u64, Ordering::Relaxed);
     }
 
     pub(super) fn device_id(&self) -> DeviceId {

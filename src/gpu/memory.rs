@@ -70,6 +70,7 @@ impl AnyBuffer {
                 )
             }
             .map_err(|e| device_error(&format!("upload the {what}"), &e))?;
+            device.count_upload(bytes.len());
         }
         Ok(buffer)
     }

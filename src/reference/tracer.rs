@@ -83,7 +83,7 @@ impl<'a> Tracer<'a> {
                 .collect(),
             noise: magnitude * NOISE_SHARE,
             medium: match &scene.picture {
-                Picture::Emission { transfer, .. } => Some(Medium::new(transfer)),
+                Picture::Emission(emission) => Some(Medium::new(&emission.transfer)),
                 _ => None,
             },
         })
@@ -125,7 +125,7 @@ impl<'a> Tracer<'a> {
                 Sight { cells, ..seen }
             }
             Picture::Projection { of, window } => self.projection(field, interval, *of, *window),
-            Picture::Emission { .. } => self.emission(field, interval, dir_world),
+            Picture::Emission(_) => self.emission(field, interval, dir_world),
         }
     }
 
@@ -176,11 +176,10 @@ impl<'a> Tracer<'a> {
     }
 
     fn emission<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
-        let (Some(medium), Picture::Emission { phong, .. }) = (&self.medium, &self.scene.picture)
-        else {
+        let (Some(medium), Picture::Emission(picture)) = (&self.medium, &self.scene.picture) else {
             return Sight::NOTHING;
         };
-        let shading = phong.map(|phong| Shading {
+        let shading = picture.phong.map(|phong| Shading {
             lighting: Lighting::new(phong, self.scene.light, dir_world),
             gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),

@@ -107,7 +107,10 @@ twin! {
         least_transmission: f32,
         knots: u32,
         traverse: u32,
-        pad: [f32; 2],
+        /// Of the adaptive quadrature's error.
+        bound: f32,
+        /// The most by which the knots' colours differ in a channel.
+        color_spread: f32,
     }
 }
 

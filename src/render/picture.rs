@@ -1,21 +1,21 @@
 //! The passes of each kind of picture: straight-line code, the order of lines is the schedule.
 
+use std::time::Instant;
+
 use crate::error::Result;
 use crate::frame::Wanted;
 use crate::gpu::Buffer;
 use crate::octree::Octree;
-use crate::scene::{
-    Phong, Projection, Refine, Rgb, SamplingMethod, Scene, TransferFunction, Traverse, Window,
-};
+use crate::scene::{Phong, Projection, Refine, Rgb, SamplingMethod, Scene, Traverse, Window};
 use crate::volume::Volume;
 
-use super::abi::{EmissionCast, ProjectionCast, RayGrid, SurfaceCast};
+use super::abi::{ProjectionCast, RayGrid, SurfaceCast};
 use super::classify;
 use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
 use super::passes::{
-    DeviceTransfer, DeviceVolume, Run, cast_emission, cast_maximum, cast_surface, exact_projection,
-    exact_surface, shade_surface, surface_normal, window_value,
+    DeviceVolume, Run, cast_maximum, cast_surface, exact_projection, exact_surface, shade_surface,
+    surface_normal, window_value,
 };
 use super::planes::Planes;
 use super::reach::add_reach;
@@ -35,19 +35,26 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
-    fn step_mm(&self) -> f32 {
+    pub fn step_mm(&self) -> f32 {
         twins::step_mm(&self.scene.sampling, self.volume) as f32
     }
 
-    fn traverse(&self) -> u32 {
+    pub fn traverse(&self) -> u32 {
         traverse_number(&self.scene.sampling)
     }
 
     /// The classes on the device, with their reach where that is how space is skipped.
-    fn upload_classes(&self, run: &Run, mut classes: Vec<u8>) -> Result<Buffer<u8>> {
+    pub fn upload_classes(
+        &self,
+        run: &mut Run,
+        classify: impl FnOnce() -> Vec<u8>,
+    ) -> Result<Buffer<u8>> {
+        let start = Instant::now();
+        let mut classes = classify();
         if self.scene.sampling.traverse == Traverse::Distance {
             add_reach(self.octree, &mut classes);
         }
+        run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
         Buffer::upload(run.device, "octree's classes", &classes)
     }
 
@@ -81,7 +88,7 @@ pub fn surface(
 ) -> Result<Planes> {
     let wanted = view.wanted;
     let iso = stored(view.volume.rescale(), iso);
-    let node_class = view.upload_classes(run, classify::by_iso(view.octree, iso))?;
+    let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso))?;
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -190,7 +197,7 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         pad_0: 0,
         pad_1: 0,
     };
-    let node_class = view.upload_classes(run, classify::by_floor(view.octree, sign, floor))?;
+    let node_class = view.upload_classes(run, || classify::by_floor(view.octree, sign, floor))?;
     let mut kind = run.plane("kind plane")?;
     let mut value = run.plane("value plane")?;
     let mut depth = wanted.depth.then(|| run.plane("depth plane")).transpose()?;
@@ -230,67 +237,5 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         certificate: None,
         counters,
         other_bytes: node_class.bytes(),
-    })
-}
-
-/// `dvr`: one cast.
-pub fn emission(
-    run: &mut Run,
-    view: &View,
-    transfer: &TransferFunction,
-    phong: Option<Phong>,
-    termination: f64,
-) -> Result<Planes> {
-    let rescale = view.volume.rescale();
-    let knots = transfer.knots_within(view.volume.range());
-    let values: Vec<f32> = knots.iter().map(|k| stored(rescale, k.value)).collect();
-    let colors: Vec<[f32; 4]> = knots
-        .iter()
-        .map(|k| {
-            let [r, g, b] = k.color.0.map(|c| c as f32);
-            [r, g, b, k.opacity as f32]
-        })
-        .collect();
-    let classes = classify::by_opacity(view.octree, &values, |k| colors[k][3]);
-    let node_class = view.upload_classes(run, classes)?;
-    let on_device = DeviceTransfer {
-        values: Buffer::upload(run.device, "transfer function", &values)?,
-        colors: Buffer::upload(run.device, "transfer function", &colors)?,
-    };
-    let cast = EmissionCast {
-        step_mm: view.step_mm(),
-        unit_length_mm: transfer.unit_length_mm() as f32,
-        most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
-        least_transmission: (1.0 - termination) as f32,
-        knots: knots.len() as u32,
-        traverse: view.traverse(),
-        pad: [0.0; 2],
-    };
-    let shading = twins::shading(Rgb::BLACK, phong, view.scene.light);
-    let mut color = run.plane("colour plane")?;
-    let mut counters = run.counters(view.wanted.counters)?;
-    cast_emission(
-        run,
-        phong.map(|_| view.gradient),
-        view.uploaded,
-        view.clip,
-        &node_class,
-        &on_device,
-        &view.rays,
-        &cast,
-        &shading,
-        &mut color,
-        counters.as_mut(),
-    )?;
-    Ok(Planes {
-        color,
-        display: None,
-        depth: None,
-        normal: None,
-        value: None,
-        kind: None,
-        certificate: None,
-        counters,
-        other_bytes: node_class.bytes() + on_device.values.bytes() + on_device.colors.bytes(),
     })
 }

@@ -11,6 +11,7 @@ use crate::scene::{Picture, Sampling, Scene};
 use crate::volume::Volume;
 
 use super::clip::DeviceClip;
+use super::emission::emission;
 use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
@@ -43,6 +44,8 @@ pub struct Renderer<'a> {
     built: Built,
     work_group: [usize; 2],
     upload_ms: f64,
+    /// Uploaded and not yet told.
+    uploaded_bytes: u64,
 }
 
 /// A frame and what it cost.
@@ -54,6 +57,10 @@ pub struct Rendering {
     pub build_ms: f64,
     /// Uploading the volume: with its first frame, then 0.
     pub upload_ms: f64,
+    /// Telling from the octree's ranges what can be left out.
+    pub classify_ms: f64,
+    /// From host to device, for this frame; with the volume's first frame the volume too.
+    pub uploaded_bytes: u64,
     /// Device time from the first launch's start to the last one's end.
     pub render_ms: f64,
     /// Of precomputed gradients, where the picture made use of them.
@@ -74,6 +81,7 @@ impl<'a> Renderer<'a> {
         options: Options,
     ) -> Result<Self> {
         let start = Instant::now();
+        let uploaded_before = device.uploaded_bytes();
         let most = device.info().max_work_group;
         let own_choice = if most < Options::WORK_GROUP.iter().product() {
             [1, 1]
@@ -111,6 +119,7 @@ impl<'a> Renderer<'a> {
             built: Built::default(),
             work_group,
             upload_ms: start.elapsed().as_secs_f64() * 1e3,
+            uploaded_bytes: device.uploaded_bytes() - uploaded_before,
         })
     }
 
@@ -120,6 +129,7 @@ impl<'a> Renderer<'a> {
     /// The device fails or has no room, or the step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
         check_step(scene, self.volume)?;
+        let uploaded_before = self.device.uploaded_bytes();
         let needed = gradient::needed(scene, wanted);
         if let Some(how) = needed
             && self.directions.as_ref().is_none_or(|d| d.how != how)
@@ -142,6 +152,7 @@ impl<'a> Renderer<'a> {
             size: scene.size,
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling),
+            classify_ms: 0.0,
         };
         let world_from_index = self.volume.geometry().world_from_index();
         let clip = DeviceClip::upload(self.device, &scene.clip_planes, world_from_index)?;
@@ -166,11 +177,7 @@ impl<'a> Renderer<'a> {
             Picture::Projection { of, window } => {
                 picture::projection(&mut run, &view, *of, *window)?
             }
-            Picture::Emission {
-                transfer,
-                phong,
-                termination,
-            } => picture::emission(&mut run, &view, transfer, *phong, *termination)?,
+            Picture::Emission(medium) => emission(&mut run, &view, medium)?,
         };
         if wanted.display {
             let mut display = run.plane("display plane")?;
@@ -183,12 +190,16 @@ impl<'a> Renderer<'a> {
             )?;
             planes.display = Some(display);
         }
+        let classify_ms = run.classify_ms;
         let (passes, render_ms) = timings.finish(self.device)?;
         Ok(Rendering {
             frame: planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?,
             passes,
             build_ms: self.built.build_ms() - build_ms_before,
             upload_ms: std::mem::take(&mut self.upload_ms),
+            classify_ms,
+            uploaded_bytes: std::mem::take(&mut self.uploaded_bytes)
+                + (self.device.uploaded_bytes() - uploaded_before),
             render_ms,
             gradients: directions.map(|directions| directions.figures),
             device_bytes: held_bytes + clip.planes.bytes() + planes.bytes(),
@@ -207,11 +218,7 @@ fn check_step(scene: &Scene, volume: &Volume) -> Result<()> {
         )));
     }
     let (_, radius_mm) = volume.bounding_sphere();
-    let samples_per_step = match scene.picture {
-        Picture::Emission { .. } => 2.0, // Simpson's rule takes the middle too
-        Picture::Surface { .. } | Picture::Projection { .. } => 1.0,
-    };
-    let samples = samples_per_step * 2.0 * radius_mm / twins::step_mm(&scene.sampling, volume);
+    let samples = 2.0 * radius_mm / twins::step_mm(&scene.sampling, volume);
     if samples < f64::from(MOST_SAMPLES) {
         return Ok(());
     }

@@ -4,12 +4,13 @@ use crate::frame::{Certificate, Kind};
 use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
 use crate::scene::{
-    ClipPlane, Filter, Gradient, Phong, Refine, RefineMethod, Reflection, Sampling,
-    TransferFunction, Traverse,
+    ClipPlane, Filter, Gradient, Phong, QuadratureMethod, Refine, RefineMethod, Reflection,
+    Sampling, Traverse,
 };
 use crate::volume::{Volume, VoxelType};
 
 use super::classify::Class;
+use super::medium;
 use super::reach::{CLASS_BITS, REACH_MOST};
 
 /// What every pass over a volume is built for.
@@ -66,6 +67,15 @@ pub fn traverse_number(sampling: &Sampling) -> u32 {
     }
 }
 
+/// The same where every leaf must be met: without skipping, one leaf after the other.
+pub fn traverse_through_leaves(sampling: &Sampling) -> u32 {
+    traverse_constant(if sampling.skip {
+        sampling.traverse
+    } else {
+        Traverse::Uniform
+    })
+}
+
 const fn traverse_constant(traverse: Traverse) -> u32 {
     match traverse {
         Traverse::Uniform => 1,
@@ -117,6 +127,18 @@ const fn reflection_constant(reflection: Reflection) -> u32 {
     }
 }
 
+pub const fn quadrature_constant(method: QuadratureMethod) -> u32 {
+    match method {
+        QuadratureMethod::Riemann => 0,
+        QuadratureMethod::Midpoint => 1,
+        QuadratureMethod::Simpson => 2,
+        QuadratureMethod::Romberg => 3,
+        QuadratureMethod::Rk4 => 4,
+        QuadratureMethod::Preintegrated => 5,
+        QuadratureMethod::Adaptive => 6,
+    }
+}
+
 /// The loops of `cast_maximum`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ProjectionLoop {
@@ -125,13 +147,17 @@ pub enum ProjectionLoop {
     Local = 2,
 }
 
+/// How often the adaptive quadrature halves a monotone piece of a cell.
+const ADAPTIVE_HALVINGS: u32 = 10;
+
 /// The most samples of a ray: single precision counts no further.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
     ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
-    ("TRANSFER_MOST_KNOTS", TransferFunction::MAX_KNOTS as u32),
+    ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
+    ("TRANSFER_MOST_KNOTS", medium::MOST_KNOTS),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
     ("KIND_CAP", Kind::Cap as u32),
@@ -155,6 +181,28 @@ const CONSTANTS: &[(&str, u32)] = &[
     ("CLASS_BELOW", Class::Below as u32),
     ("CLASS_ABOVE", Class::Above as u32),
     ("CLASS_VISIT", Class::Visit as u32),
+    ("CLASS_HOMOGENEOUS", Class::Homogeneous as u32),
+    (
+        "QUADRATURE_RIEMANN",
+        quadrature_constant(QuadratureMethod::Riemann),
+    ),
+    (
+        "QUADRATURE_MIDPOINT",
+        quadrature_constant(QuadratureMethod::Midpoint),
+    ),
+    (
+        "QUADRATURE_SIMPSON",
+        quadrature_constant(QuadratureMethod::Simpson),
+    ),
+    (
+        "QUADRATURE_ROMBERG",
+        quadrature_constant(QuadratureMethod::Romberg),
+    ),
+    ("QUADRATURE_RK4", quadrature_constant(QuadratureMethod::Rk4)),
+    (
+        "QUADRATURE_PREINTEGRATED",
+        quadrature_constant(QuadratureMethod::Preintegrated),
+    ),
     ("REFINE_NONE", refine_constant(RefineMethod::None)),
     ("REFINE_BISECTION", refine_constant(RefineMethod::Bisection)),
     (

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-use super::{Phong, Refine, Rgb, TransferFunction};
+use super::{Homogeneity, Phong, Quadrature, Refine, Rgb, TransferFunction};
 
 /// The kind of picture (`--mode`).
 #[derive(Debug, Clone, PartialEq)]
@@ -20,14 +20,37 @@ pub enum Picture {
     /// `mip`, `minip`, `mean`, `lmip`: one value per ray, shown through a window.
     Projection { of: Projection, window: Window },
     /// `dvr`: emission and absorption under a transfer function.
-    Emission {
-        transfer: TransferFunction,
-        /// `None`: the transfer function's colours alone.
-        phong: Option<Phong>,
-        /// A ray ends where its opacity exceeds this, in (0, 1]; the colour lost is at most
-        /// (1 − termination) times the brightest colour.
-        termination: f64,
-    },
+    Emission(Emission),
+}
+
+/// An emitting, absorbing medium, and how it is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Emission {
+    pub transfer: TransferFunction,
+    /// `None`: the transfer function's colours alone.
+    pub phong: Option<Phong>,
+    pub quadrature: Quadrature,
+    /// A ray ends where its opacity exceeds this, in (0, 1]; the colour lost is at most
+    /// (1 − termination) times the brightest colour.
+    pub termination: f64,
+    /// `None`: every node that is not transparent is sampled. Not with shading, for normals differ
+    /// within a node, nor with the adaptive quadrature, whose bound it would break.
+    pub homogeneity: Option<Homogeneity>,
+}
+
+impl Emission {
+    pub const DEFAULT_TERMINATION: f64 = 0.999;
+
+    /// Unshaded, with the default quadrature and termination.
+    pub fn of(transfer: TransferFunction) -> Self {
+        Self {
+            transfer,
+            phong: None,
+            quadrature: Quadrature::default(),
+            termination: Self::DEFAULT_TERMINATION,
+            homogeneity: None,
+        }
+    }
 }
 
 impl Picture {
@@ -36,7 +59,7 @@ impl Picture {
         match self {
             Self::Surface { .. } => "iso",
             Self::Projection { of, .. } => of.mode(),
-            Self::Emission { .. } => "dvr",
+            Self::Emission(_) => "dvr",
         }
     }
 }

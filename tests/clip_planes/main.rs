@@ -13,8 +13,8 @@ use angioray::extent::ImageSize;
 use angioray::frame::Frame;
 use angioray::gpu::Device;
 use angioray::scene::{
-    Camera, ClipPlane, Knot, Lens, Picture, Projection, Refine, Rgb, SamplingMethod, Scene,
-    TransferFunction, Window,
+    Camera, ClipPlane, Emission, Knot, Lens, Picture, Projection, Refine, Rgb, SamplingMethod,
+    Scene, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, Volume};
 use common::{on_device, on_reference, volume_with};
@@ -62,7 +62,7 @@ impl Engine {
             Some(device) => {
                 let mut scenes = scenes.to_vec();
                 for scene in &mut scenes {
-                    if !matches!(scene.picture, Picture::Emission { .. }) {
+                    if !matches!(scene.picture, Picture::Emission(_)) {
                         scene.sampling.method = self.method;
                     }
                 }
@@ -106,11 +106,10 @@ fn medium() -> Picture {
         color: Rgb([1.0; 3]),
         opacity: -(-ABSORPTION_PER_MM).exp_m1(),
     };
-    Picture::Emission {
-        transfer: TransferFunction::new(vec![knot], 1.0).unwrap(),
-        phong: None,
+    Picture::Emission(Emission {
         termination: 1.0,
-    }
+        ..Emission::of(TransferFunction::new(vec![knot], 1.0).unwrap())
+    })
 }
 
 /// A surface at 100: with caps, the interval's beginning; without, nothing.

@@ -10,7 +10,7 @@ mod values;
 use angioray::extent::ImageSize;
 use angioray::gpu::Device;
 use angioray::scene::{
-    Camera, Knot, Picture, Projection, Refine, Rgb, Scene, TransferFunction, Window,
+    Camera, Emission, Knot, Picture, Projection, Refine, Rgb, Scene, TransferFunction, Window,
 };
 use angioray::volume::Volume;
 use common::Figure::{AlphaMax, DepthP99, Kind, ValueMax};
@@ -57,11 +57,10 @@ fn emission(knots: &[(f64, f64)], unit_mm: f64) -> Picture {
         color: Rgb([0.8, 0.5, 0.3]),
         opacity,
     };
-    Picture::Emission {
-        transfer: TransferFunction::new(knots.iter().map(knot).collect(), unit_mm).unwrap(),
-        phong: None,
+    Picture::Emission(Emission {
         termination: 1.0,
-    }
+        ..Emission::of(TransferFunction::new(knots.iter().map(knot).collect(), unit_mm).unwrap())
+    })
 }
 
 /// Each mode over the volume's own range.

@@ -3,8 +3,8 @@
 use angioray::extent::{Dims, ImageSize};
 use angioray::reference::{Sight, Tracer};
 use angioray::scene::{
-    Camera, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb, Sampling,
-    Scene, Tone, TransferFunction, Window,
+    Camera, Emission, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb,
+    Sampling, Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DQuat, DVec3};
@@ -95,11 +95,11 @@ pub fn projection(of: Projection) -> Picture {
 }
 
 pub fn dvr(transfer: TransferFunction, phong: Option<Phong>) -> Picture {
-    Picture::Emission {
-        transfer,
+    Picture::Emission(Emission {
         phong,
         termination: 0.5,
-    }
+        ..Emission::of(transfer)
+    })
 }
 
 pub fn cast_scene(volume: &Volume, scene: &Scene, origin: DVec3, toward: DVec3) -> Sight {

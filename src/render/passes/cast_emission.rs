@@ -3,6 +3,8 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::variant::quadrature_constant;
+use crate::scene::QuadratureMethod;
 
 use super::{Counters, DeviceClip, DeviceGradient, DeviceVolume, Run, levels, switch, voxels};
 
@@ -11,16 +13,31 @@ pub struct DeviceTransfer {
     pub values: Buffer<f32>,
     /// Linear light, opacity of the unit length in the last channel.
     pub colors: Buffer<[f32; 4]>,
+    /// As `mean_medium` of `preintegrated.clh` has them; empty where no rule wants them.
+    pub sums: Buffer<[f32; 4]>,
+    pub knots: u32,
+    /// The most by which the knots' colours differ in a channel.
+    pub color_spread: f32,
 }
 
-/// Emission and absorption along each ray: `color`, linear light, premultiplied.
+impl DeviceTransfer {
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.values.bytes() + self.colors.bytes() + self.sums.bytes()
+    }
+}
+
+/// Emission and absorption along each ray by `method`: `color`, linear light, premultiplied.
+/// `node_average`, of the leaves, where some are homogeneous.
 #[allow(clippy::too_many_arguments)]
 pub fn cast_emission(
     run: &mut Run,
+    method: QuadratureMethod,
     shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
     clip: &DeviceClip,
     node_class: &Buffer<u8>,
+    node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
     cast: &EmissionCast,
@@ -30,9 +47,12 @@ pub fn cast_emission(
 ) -> Result<()> {
     let with_counters = counters.is_some();
     let variant = run.variant;
+    let integrates = method == QuadratureMethod::Preintegrated;
     let gradient = shaded_by.unwrap_or(DeviceGradient::none());
     let defines = gradient
         .define(variant.defines())
+        .with("QUADRATURE", format!("{}u", quadrature_constant(method)))
+        .with("HOMOGENEOUS", switch(node_average.is_some()))
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_emission", defines, || {
@@ -42,9 +62,13 @@ pub fn cast_emission(
             levels(),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
+        ];
+        signature.extend(integrates.then(|| input::<[f32; 4]>("knot_sums")));
+        signature.extend(node_average.map(|_| input::<f32>("node_average")));
+        signature.extend([
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
-        ];
+        ]);
         signature.extend(gradient.parameters());
         signature.extend([
             value::<VolumeGrid>("volume"),
@@ -56,15 +80,20 @@ pub fn cast_emission(
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let launch = pass
+    let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
         .input(&transfer.values)
-        .input(&transfer.colors)
-        .input(&clip.planes)
-        .value(&clip.count);
+        .input(&transfer.colors);
+    if integrates {
+        launch = launch.input(&transfer.sums);
+    }
+    if let Some(node_average) = node_average {
+        launch = launch.input(node_average);
+    }
+    let launch = launch.input(&clip.planes).value(&clip.count);
     let launch = gradient
         .give(launch)
         .value(&volume.grid)

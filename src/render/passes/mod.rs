@@ -1,5 +1,6 @@
 //! One typed function per kernel of `kernels/pass`: `&` is read, `&mut` is written.
 
+mod adaptive_emission;
 mod cast_emission;
 mod cast_maximum;
 mod cast_surface;
@@ -25,6 +26,7 @@ use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
 use super::variant::{Variant, voxel_cl_name};
 
+pub use adaptive_emission::adaptive_emission;
 pub use cast_emission::{DeviceTransfer, cast_emission};
 pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;
@@ -76,6 +78,8 @@ pub struct Run<'a> {
     /// Pixels along x and y that one work-group takes.
     pub work_group: [usize; 2],
     pub variant: Variant,
+    /// Time spent classifying the octree's nodes.
+    pub classify_ms: f64,
 }
 
 impl Run<'_> {

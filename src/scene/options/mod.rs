@@ -30,8 +30,8 @@ pub use file::{SceneFile, flag_names};
 pub use gradient::GradientScale;
 pub(crate) use numbers::concise;
 pub use numbers::{
-    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, Reflectance, Shininess, SigmaMm,
-    SigmaVoxels, StepVoxels, Termination, Zoom,
+    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,
+    Shininess, SigmaMm, SigmaVoxels, StepVoxels, Termination, Zoom,
 };
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;

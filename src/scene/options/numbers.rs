@@ -85,6 +85,8 @@ numbers! {
     Shininess: "a shininess", "from 1 to 1000", |v| (1.0..=1000.0).contains(&v);
     /// Opacity at which a ray ends.
     Termination: "a termination", "above 0 and at most 1", |v| v > 0.0 && v <= 1.0;
+    /// Error or share of the value range within which a node is homogeneous.
+    HomogeneityLimit: "a homogeneity", "above 0 and at most 1", |v| v > 0.0 && v <= 1.0;
     /// Added to the display picture.
     Brightness: "a brightness", "from -1 to 1", |v| (-1.0..=1.0).contains(&v);
     /// Slope about the display picture's middle grey.

@@ -12,12 +12,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::gradient::GradientScale;
 use super::group::{Keys, group};
-use super::numbers::{Reflectance, Shininess, SigmaVoxels, Termination};
+use super::numbers::{HomogeneityLimit, Reflectance, Shininess, SigmaVoxels, Termination};
 use super::subject::Subject;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
 use super::words::{GradientMethod, Mode, Shading, Switch};
 use crate::error::{Error, Result};
-use crate::scene::{Refine, TransferFile};
+use crate::scene::{Emission, HomogeneityRule, Quadrature, Refine, TransferFile};
 
 group! {
     /// What is shown.
@@ -61,6 +61,22 @@ group! {
         /// 3dra (shares of the value range) [default: 3dra]
         #[arg(long, value_name = "FILE|PRESET")]
         tf: TransferChoice,
+
+        /// dvr: how light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or
+        /// preintegrated at the fixed step, or adaptive, which takes no steps and keeps every
+        /// channel within the error :BOUND of linear light [default: simpson; adaptive:0.001]
+        #[arg(long, value_name = "METHOD[:BOUND]")]
+        quad: Quadrature,
+
+        /// dvr: take an octree leaf for its average value, in one step, where that changes no
+        /// pixel by more than E [default: never]
+        #[arg(long, value_name = "E", allow_hyphen_values = true)]
+        homogeneity: HomogeneityLimit,
+
+        /// dvr: what E limits: optical, the pixel's error; or range, the leaf's value range as a
+        /// share of the volume's, whatever the transfer function does in it [default: optical]
+        #[arg(long, value_name = "optical|range")]
+        homogeneity_rule: HomogeneityRule,
 
         /// dvr: the opacity at which a ray ends; the colour lost is at most 1 minus this
         /// [default: 0.999]
@@ -184,11 +200,13 @@ const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
 const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
 /// What a shading makes use of.
 const LIGHT: [&str; 5] = ["ambient", "diffuse", "specular", "shininess", "light"];
+/// What shading and the adaptive quadrature rule out.
+const HOMOGENEITY: [&str; 2] = ["homogeneity", "homogeneity-rule"];
 const UNLIT: &str = "a projection has no surface to light";
 const NO_NORMALS: &str = "a projection has no normals";
 
 #[rustfmt::skip]
-const BELONGS: [Belongs; 17] = [
+const BELONGS: [Belongs; 20] = [
     Belongs { key: "iso", modes: &[Mode::Iso], why: "only a surface has an iso value" },
     Belongs { key: "caps", modes: &[Mode::Iso], why: "only a surface is closed where the volume ends" },
     Belongs { key: "refine", modes: &[Mode::Iso], why: "only a surface has a hit to refine" },
@@ -196,6 +214,9 @@ const BELONGS: [Belongs; 17] = [
     Belongs { key: "window", modes: PROJECTIONS, why: "only a projection shows values as grey" },
     Belongs { key: "lmip-threshold", modes: &[Mode::Lmip], why: "only lmip looks for a local maximum" },
     Belongs { key: "tf", modes: &[Mode::Dvr], why: "only dvr maps values to opacity; a surface has 'color', a projection 'window'" },
+    Belongs { key: "quad", modes: &[Mode::Dvr], why: "only dvr sums light along the ray" },
+    Belongs { key: "homogeneity", modes: &[Mode::Dvr], why: "only dvr takes a node for its average" },
+    Belongs { key: "homogeneity-rule", modes: &[Mode::Dvr], why: "only dvr takes a node for its average" },
     Belongs { key: "termination", modes: &[Mode::Dvr], why: "only dvr gathers opacity along the ray" },
     Belongs { key: "shading", modes: LIT, why: UNLIT },
     Belongs { key: "ambient", modes: LIT, why: UNLIT },
@@ -247,6 +268,16 @@ impl PictureOptions {
         if self.shading == Some(Shading::None) {
             file = file.unlit();
         }
+        let lit = self.shading.is_some_and(|s| s != Shading::None);
+        let adapts = self.quad.is_some_and(|quad| !quad.is_stepped());
+        if lit || adapts {
+            file = file.keeping(|key| !HOMOGENEITY.contains(&key));
+        }
+        if self.homogeneity.is_some() {
+            file.quad = file.quad.filter(|quad| quad.is_stepped());
+            file.shading = None;
+            file = file.unlit();
+        }
         if had_normals && !self.clone().over(file.clone()).has_normals() {
             file = file.without_gradient();
         }
@@ -286,7 +317,34 @@ impl PictureOptions {
             ))
             .hint("choose a shading: phong or blinn-phong"));
         }
+        self.check_homogeneity()?;
         self.check_gradient()
+    }
+
+    /// # Errors
+    /// Homogeneous nodes where a node's average says too little, or their rule without them.
+    fn check_homogeneity(&self) -> Result<()> {
+        if self.homogeneity.is_none() {
+            return match self.homogeneity_rule {
+                None => Ok(()),
+                Some(rule) => Err(Error::usage(format!(
+                    "'homogeneity-rule' {rule} has no effect without 'homogeneity', its limit"
+                ))),
+            };
+        }
+        if self.shading() != Shading::None {
+            return Err(Error::usage(
+                "'homogeneity' does not go with shading: normals differ inside a node",
+            )
+            .hint("choose shading none, or leave homogeneity out"));
+        }
+        if !self.quad.unwrap_or_default().is_stepped() {
+            return Err(Error::usage(
+                "'homogeneity' does not go with quad 'adaptive', which keeps a bound of its own",
+            )
+            .hint("choose another quad, or leave homogeneity out"));
+        }
+        Ok(())
     }
 
     /// With every default of its mode in its place, every value physical, and the transfer
@@ -328,10 +386,15 @@ impl PictureOptions {
                 };
                 Self {
                     tf: Some(TransferChoice::Written(file.in_values(subject.range))),
+                    quad: self.quad.or(Some(Quadrature::default())),
                     termination: match self.termination {
                         Some(termination) => Some(termination),
-                        None => Some(Termination::new(Self::DEFAULT_TERMINATION)?),
+                        None => Some(Termination::new(Emission::DEFAULT_TERMINATION)?),
                     },
+                    homogeneity: self.homogeneity,
+                    homogeneity_rule: self
+                        .homogeneity
+                        .map(|_| self.homogeneity_rule.unwrap_or_default()),
                     mode: Some(mode),
                     ..lit
                 }

@@ -157,6 +157,8 @@ impl serde::Serialize for ImageSize {
 
 plain!(
     crate::scene::Refine,
+    crate::scene::Quadrature,
+    crate::scene::HomogeneityRule,
     crate::scene::Filter,
     crate::scene::SamplingMethod,
     crate::scene::Traverse,

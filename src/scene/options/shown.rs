@@ -1,17 +1,18 @@
 //! From filled picture options to the picture and its light.
 
-use super::numbers::{Reflectance, Shininess, Termination};
+use super::numbers::{HomogeneityLimit, Reflectance, Shininess, Termination};
 use super::picture::PictureOptions;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
 use super::words::{Mode, Shading, Switch};
 use crate::error::Result;
 use crate::extent::Range;
-use crate::scene::{Light, Phong, Picture, Projection, Reflection, Rgb, TransferFile, Window};
+use crate::scene::{
+    Emission, Homogeneity, Light, Phong, Picture, Projection, Reflection, Rgb, TransferFile, Window,
+};
 
 impl PictureOptions {
     /// A surface's colour, sRGB: warm ivory.
     pub(super) const IVORY: SrgbColor = SrgbColor([0.94, 0.87, 0.76]);
-    pub(super) const DEFAULT_TERMINATION: f64 = 0.999;
 
     /// The shading, light and gradient alone, with their defaults in place.
     pub(super) fn lit(&self) -> Result<Self> {
@@ -72,13 +73,17 @@ impl PictureOptions {
                     Some(choice) => choice.read()?,
                     None => TransferFile::named(TransferFile::DEFAULT_PRESET)?,
                 };
-                Ok(Picture::Emission {
+                let rule = self.homogeneity_rule.unwrap_or_default();
+                let homogeneity = self.homogeneity.map(HomogeneityLimit::get);
+                Ok(Picture::Emission(Emission {
                     transfer: file.transfer_function(range)?,
                     phong: self.phong(),
+                    quadrature: self.quad.unwrap_or_default(),
                     termination: self
                         .termination
-                        .map_or(Self::DEFAULT_TERMINATION, Termination::get),
-                })
+                        .map_or(Emission::DEFAULT_TERMINATION, Termination::get),
+                    homogeneity: homogeneity.map(|limit| Homogeneity { rule, limit }),
+                }))
             }
         }
     }

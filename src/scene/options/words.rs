@@ -1,7 +1,9 @@
 //! Choices by name: what a flag calls each, in one place.
 
 use super::plain::plain;
-use crate::scene::{Filter, RefineMethod, SamplingMethod, Traverse};
+use crate::scene::{
+    Filter, HomogeneityRule, QuadratureMethod, RefineMethod, SamplingMethod, Traverse,
+};
 
 /// Gives an enum its names: `FromStr`, `Display`.
 macro_rules! words {
@@ -118,6 +120,10 @@ words!(View, "a view": Anterior = "anterior", Posterior = "posterior", Left = "l
 words!(Filter, "a filter": Nearest = "nearest", Linear = "linear");
 words!(RefineMethod, "a refiner": None = "none", Bisection = "bisection",
     RegulaFalsi = "regula-falsi", Illinois = "illinois", Newton = "newton");
+words!(QuadratureMethod, "a quadrature": Riemann = "riemann", Midpoint = "midpoint",
+    Simpson = "simpson", Romberg = "romberg", Rk4 = "rk4", Preintegrated = "preintegrated",
+    Adaptive = "adaptive");
+words!(HomogeneityRule, "a rule for homogeneous nodes": Optical = "optical", Range = "range");
 words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
     Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
 words!(SamplingMethod, "a sampling": Fixed = "fixed", Exact = "exact");

@@ -1,0 +1,220 @@
+//! The transfer function as the device has it: knots in stored units, and their sums.
+
+use crate::scene::TransferFunction;
+use crate::volume::Volume;
+
+use super::twins::stored;
+
+/// Knots, ascending in value.
+pub struct Knots {
+    /// Stored units.
+    pub values: Vec<f32>,
+    /// Linear light; the opacity of the unit length in the last channel.
+    pub colors: Vec<[f32; 4]>,
+}
+
+/// Between two smooth knots 1 − opacity changes by this factor at most, so that three Gauss points
+/// integrate its logarithm within 1e-6 of itself.
+const SMOOTH_RATIO: f64 = 1.5;
+
+/// Into how many parts an interval is divided at most, when made smooth:
+/// ln(1 − MAX_OPACITY) / −ln SMOOTH_RATIO, and one beyond the greatest opacity.
+const SMOOTH_PARTS: usize = 36;
+
+/// The most knots that the device meets.
+pub const MOST_KNOTS: u32 = (TransferFunction::MAX_KNOTS * SMOOTH_PARTS) as u32;
+
+impl Knots {
+    /// Those that shape the function on the volume's values.
+    pub fn of(transfer: &TransferFunction, volume: &Volume) -> Self {
+        let knots = transfer.knots_within(volume.range());
+        let rescale = volume.rescale();
+        Self {
+            values: knots.iter().map(|k| stored(rescale, k.value)).collect(),
+            colors: knots
+                .iter()
+                .map(|k| {
+                    let [r, g, b] = k.color.0.map(|c| c as f32);
+                    [r, g, b, k.opacity as f32]
+                })
+                .collect(),
+        }
+    }
+
+    /// The same function with more knots, so that between any two its absorption is close to a
+    /// polynomial.
+    pub fn smooth(&self) -> Self {
+        let mut smooth = Self {
+            values: vec![self.values[0]],
+            colors: vec![self.colors[0]],
+        };
+        for k in 1..self.values.len() {
+            let [v0, v1] = [self.values[k - 1], self.values[k]].map(f64::from);
+            let [c0, c1] = [self.colors[k - 1], self.colors[k]].map(|c| c.map(f64::from));
+            if v0 < v1 {
+                for f in smooth_parts(c0[3], c1[3]) {
+                    smooth.values.push((v0 + (v1 - v0) * f) as f32);
+                    let color = std::array::from_fn(|c| (c0[c] + (c1[c] - c0[c]) * f) as f32);
+                    smooth.colors.push(color);
+                }
+            }
+            smooth.values.push(self.values[k]);
+            smooth.colors.push(self.colors[k]);
+        }
+        smooth
+    }
+
+    /// The most by which the knots' colours differ in a channel.
+    pub fn color_spread(&self) -> f32 {
+        let spread = |c: usize| {
+            let channel = || self.colors.iter().map(|color| color[c]);
+            channel().fold(0.0, f32::max) - channel().fold(1.0, f32::min)
+        };
+        (0..3).map(spread).fold(0.0, f32::max)
+    }
+
+    /// Two entries a knot, the number in single precision and what that lacks: the integrals from
+    /// the first knot on of colour times absorption, and, in the last channel, of absorption, of
+    /// the unit length.
+    pub fn sums(&self) -> Vec<[f32; 4]> {
+        let mut sum = [0.0; 4];
+        let mut pairs = Vec::with_capacity(2 * self.values.len());
+        for k in 0..self.values.len() {
+            if k > 0 {
+                let [v0, v1] = [self.values[k - 1], self.values[k]].map(f64::from);
+                let [c0, c1] = [self.colors[k - 1], self.colors[k]].map(|c| c.map(f64::from));
+                let parts = smooth_parts(c0[3], c1[3]);
+                let ends = || std::iter::once(0.0).chain(parts.iter().copied());
+                for (from, to) in ends().zip(ends().skip(1).chain([1.0])) {
+                    for (place, weight) in GAUSS {
+                        let at = |c: usize| c0[c] + (c1[c] - c0[c]) * (from + (to - from) * place);
+                        let absorption = (v1 - v0) * (to - from) * weight * unit_absorption(at(3));
+                        for (c, sum) in sum.iter_mut().enumerate() {
+                            *sum += absorption * if c < 3 { at(c) } else { 1.0 };
+                        }
+                    }
+                }
+            }
+            let near = sum.map(|s| s as f32);
+            pairs.push(near);
+            pairs.push(std::array::from_fn(|c| {
+                (sum[c] - f64::from(near[c])) as f32
+            }));
+        }
+        pairs
+    }
+}
+
+/// Nodes on 0..1 and weights of the five-point rule.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668, 0.118_463_442_528_095),
+    (0.230_765_344_947_158_5, 0.239_314_335_249_683),
+    (0.5, 0.284_444_444_444_444_4),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683),
+    (0.953_089_922_969_332, 0.118_463_442_528_095),
+];
+
+/// −ln(1 − opacity), that of the greatest opacity at most.
+pub fn unit_absorption(opacity: f64) -> f64 {
+    -(-opacity.min(TransferFunction::MAX_OPACITY)).ln_1p()
+}
+
+/// Where an interval between two opacities is divided, as shares of it, ascending.
+fn smooth_parts(opacity_0: f64, opacity_1: f64) -> Vec<f64> {
+    let least = 1.0 - TransferFunction::MAX_OPACITY;
+    let (clear_0, clear_1) = (1.0 - opacity_0, 1.0 - opacity_1);
+    let (low, high) = (clear_0.min(clear_1), clear_0.max(clear_1));
+    let mut levels = Vec::new();
+    let mut level = high / SMOOTH_RATIO;
+    while level > low.max(least) {
+        levels.push(level);
+        level /= SMOOTH_RATIO;
+    }
+    if low < least && least < high {
+        levels.push(least);
+    }
+    if clear_0 < clear_1 {
+        levels.reverse();
+    }
+    levels
+        .iter()
+        .map(|level| (clear_0 - level) / (clear_0 - clear_1))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn knots(points: &[(f32, f32)]) -> Knots {
+        Knots {
+            values: points.iter().map(|p| p.0).collect(),
+            colors: points.iter().map(|p| [p.1, 0.5, 1.0 - p.1, p.1]).collect(),
+        }
+    }
+
+    fn opacity_at(knots: &Knots, value: f64) -> f64 {
+        let after = knots.values.partition_point(|&v| f64::from(v) <= value);
+        if after == 0 || after == knots.values.len() {
+            return knots.colors[after.min(knots.values.len() - 1)][3].into();
+        }
+        let [v0, v1] = [knots.values[after - 1], knots.values[after]].map(f64::from);
+        let [a0, a1] = [knots.colors[after - 1][3], knots.colors[after][3]].map(f64::from);
+        a0 + (a1 - a0) * (value - v0) / (v1 - v0)
+    }
+
+    const HARD: [(f32, f32); 7] = [
+        (0.0, 0.0),
+        (10.0, 1.0),
+        (20.0, 0.999_999),
+        (20.0, 0.2),
+        (21.0, 0.0),
+        (40.0, 0.0),
+        (50.0, 0.999),
+    ];
+
+    #[test]
+    fn smooth_knots_are_the_same_function_and_few() {
+        let whole = knots(&HARD);
+        let smooth = whole.smooth();
+        for i in 0..=5000 {
+            let value = f64::from(i) * 0.01;
+            let off = opacity_at(&whole, value) - opacity_at(&smooth, value);
+            assert!(off.abs() < 1e-6, "{value}: {off}");
+        }
+        assert!(smooth.values.len() > 40);
+        assert!(smooth.values.is_sorted());
+        // The worst interval, alone.
+        let worst = knots(&[(0.0, 0.0), (1.0, 1.0)]).smooth().values.len() - 1;
+        assert!((20..=SMOOTH_PARTS).contains(&worst), "{worst}");
+        for pair in smooth.colors.windows(2) {
+            let clear = pair_of(|k| (1.0 - f64::from(pair[k][3])).max(1e-6));
+            let ratio = clear[0].max(clear[1]) / clear[0].min(clear[1]);
+            // Not at the jump; single precision has two digits left of the least.
+            assert!(ratio < 1.6 || pair[1][3] == 0.2, "{pair:?}");
+        }
+    }
+
+    fn pair_of(at: impl Fn(usize) -> f64) -> [f64; 2] {
+        [at(0), at(1)]
+    }
+
+    /// ∫ −ln(1 − α) over a ramp from 0 to a: closed form. The same whether the knots are smooth.
+    #[test]
+    fn sums_are_the_integrals() {
+        for a in [0.3f32, 0.9, 0.999_9] {
+            for ramp in [&[(2.0, 0.0), (5.0, a)][..], &[(2.0, a), (5.0, 0.0)]] {
+                for knots in [knots(ramp), knots(ramp).smooth()] {
+                    let sums = knots.sums();
+                    let last = sums.len() - 2;
+                    let total = f64::from(sums[last][3]) + f64::from(sums[last + 1][3]);
+                    let clear = 1.0 - f64::from(a);
+                    let truth = 3.0 * (clear * clear.ln() + 1.0 - clear) / (1.0 - clear);
+                    assert!((total - truth).abs() < 2e-7 * truth, "{a}: {total} {truth}");
+                    // The control: the sum of less than all of it.
+                    assert!((f64::from(sums[0][3]) - truth).abs() > 0.5 * truth);
+                }
+            }
+        }
+    }
+}

@@ -78,6 +78,19 @@ impl<'a> Judge<'a> {
         Met::from(&self.tracer.cast(ray))
     }
 
+    /// Whether the reference's answer is not itself decided by its rounding: a hit or none also for
+    /// iso values a few of its last digits away.
+    pub fn is_certain(&self, ray: Ray, truth: Met) -> bool {
+        let near = 1e-12 * self.volume.range().width();
+        [-near, near].into_iter().all(|iso| {
+            let off = Off {
+                by: DVec3::ZERO,
+                iso,
+            };
+            (self.seen(ray, off).kind == Kind::Nothing) == (truth.kind == Kind::Nothing)
+        })
+    }
+
     /// Of an answer that differs from the `truth` of its ray, or not. `resolution_mm` is what the
     /// answer's own depth tells apart. The ray's direction need not be of unit length: depths are in
     /// its lengths.
@@ -130,7 +143,8 @@ impl<'a> Judge<'a> {
             iso: 0.0,
         };
         // The nearest answers before and behind, nothing being behind all.
-        let (mut before, mut behind): (Option<(Off, Met)>, Option<(Off, Met)>) = (None, None);
+        let mut before: Option<(Off, Met)> = None;
+        let mut behind: Option<(Off, Met)> = None;
         // Whether near rays pass the truth's place.
         let mut passes = false;
         for by in self.moves(ray) {

@@ -62,6 +62,11 @@ impl View {
         Self::perspective(name, eye, center, 30.0)
     }
 
+    pub fn named(mut self, name: &str) -> Self {
+        self.name = name.to_owned();
+        self
+    }
+
     pub fn size(mut self, width: u32, height: u32) -> Self {
         self.lines
             .push_str(&format!("size = \"{width}x{height}\"\n"));

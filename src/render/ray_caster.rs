@@ -70,17 +70,11 @@ impl<'a> RayCaster<'a> {
             pad: 0,
         };
         let device = self.device;
-        let upload = |four: fn(&([f32; 3], [f32; 3])) -> [f32; 3]| {
-            let vectors: Vec<[f32; 4]> = rays
-                .iter()
-                .map(|ray| {
-                    let [x, y, z] = four(ray);
-                    [x, y, z, 0.0]
-                })
-                .collect();
-            Buffer::upload(device, "rays", &vectors)
-        };
-        let (origins, dirs) = (upload(|ray| ray.0)?, upload(|ray| ray.1)?);
+        let four = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        let origins: Vec<[f32; 4]> = rays.iter().map(|ray| four(ray.0)).collect();
+        let dirs: Vec<[f32; 4]> = rays.iter().map(|ray| four(ray.1)).collect();
+        let origins = Buffer::upload(device, "rays", &origins)?;
+        let dirs = Buffer::upload(device, "rays", &dirs)?;
         let voxels = volume.voxels();
         let voxels = AnyBuffer::upload(
             device,

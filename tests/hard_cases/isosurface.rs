@@ -239,7 +239,7 @@ fn touching_vessels() {
         "isosurface::touching_vessels",
         "touching-vessels",
         truth,
-        &[TEXTURE_WEIGHTS],
+        &[NO_ROOT],
     );
 }
 
@@ -323,7 +323,13 @@ fn without_border(volume: &Volume) -> Volume {
         panic!("made for u8");
     };
     let mut moved = vec![0u8; voxels.len()];
-    let inward = |c: usize, n: usize| if c % 8 == 0 && c + 1 < n { c + 1 } else { c };
+    let inward = |c: usize, n: usize| {
+        if c.is_multiple_of(8) && c + 1 < n {
+            c + 1
+        } else {
+            c
+        }
+    };
     for z in 0..nz {
         for y in 0..ny {
             for x in 0..nx {
@@ -373,7 +379,7 @@ fn zero_gradient() {
         lines
     }
     let no_normal = kernel(
-        "lib/field.clh",
+        "lib/gradient.clh",
         &[("return fallback;", "return (float3)(0.0f);")],
     );
     judge(
@@ -401,7 +407,7 @@ fn mirrored_normals() {
         lines
     }
     let index_space = kernel(
-        "lib/field.clh",
+        "lib/gradient.clh",
         &[("volume.gradient_row_x.x * covector.x", "covector.x")],
     );
     judge(

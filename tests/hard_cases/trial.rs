@@ -56,15 +56,11 @@ impl Seen<'_> {
 
     /// How many pixels hit; of an emission, are not transparent.
     pub fn hits(&self) -> usize {
-        let Some(kind) = &self.frame.kind else {
-            return self
-                .frame
-                .color
-                .iter()
-                .filter(|color| color[3] > 0.0)
-                .count();
+        let hit = |pixel: usize| match self.scene.picture {
+            Picture::Emission { .. } => self.alpha(pixel) > 0.0,
+            _ => self.kind(pixel) != 0,
         };
-        kind.iter().filter(|&&kind| kind != 0).count()
+        (0..self.pixels()).filter(|&pixel| hit(pixel)).count()
     }
 
     /// The ray of a pixel.
@@ -144,6 +140,23 @@ pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
             "{name} does not catch a change on the host"
         );
         println!("caught a change on the host: {}", caught[0]);
+    }
+}
+
+/// Judges the case's truth on the reference alone.
+pub fn judge_reference(name: &str, truth: Truth) {
+    let (case, _) = HardCase::named(name).unwrap();
+    let volume = case.volume(0).unwrap().volume;
+    for (scene_name, scene) in &resolved(case, 0, &volume) {
+        let frame = &on_reference(&volume, scene);
+        let seen = Seen {
+            name: scene_name,
+            volume: &volume,
+            scene,
+            frame,
+        };
+        let lines = truth(&seen);
+        assert!(lines.is_empty(), "{name} {scene_name}: {lines:?}");
     }
 }
 

@@ -10,7 +10,7 @@ use angioray::volume::{
 use glam::{DMat3, DVec3};
 
 use crate::common::Figure::{ColorMean, DepthMean, Kind, NormalMean};
-use crate::common::{self, Figure};
+use crate::common::{self, Figure, on_reference};
 use crate::mutant::{Mutant, assert_caught, is_mutant, kernel};
 use crate::trial::{Seen, is, judge, near, resolved};
 
@@ -233,5 +233,50 @@ fn wide_index() {
 
 #[test]
 fn clip_planes() {
-    judge("volumes::clip_planes", "clip-planes", |_| Vec::new(), &[]);
+    fn truth(seen: &Seen) -> Vec<String> {
+        let hits = seen.hits();
+        if seen.name.starts_with("nothing-left") {
+            return is("nothing is left", hits == 0);
+        }
+        let mut lines = is("something is hit", hits > 20);
+        // What is hit is on the kept side.
+        for pixel in (0..seen.pixels()).filter(|&pixel| seen.kind(pixel) != 0) {
+            let ray = seen.ray(pixel);
+            let at = ray.origin_world + ray.dir_world * seen.depth_mm(pixel);
+            for plane in &seen.scene.clip_planes {
+                let normal = plane.normal_world();
+                let above = (normal.dot(at) + plane.offset()) / normal.length();
+                lines.extend(is("a hit is on the kept side", above > -1e-3));
+            }
+        }
+        // One plane, written otherwise or among planes that cut nothing.
+        if seen.name.starts_with("scaled") || seen.name.starts_with("many") {
+            let (case, _) = HardCase::named("clip-planes").unwrap();
+            let scenes = resolved(case, 0, seen.volume);
+            let (_, half) = scenes
+                .iter()
+                .find(|(name, _)| name.starts_with("half"))
+                .unwrap();
+            let expected = on_reference(seen.volume, half).kind.unwrap();
+            let same = (0..seen.pixels()).all(|pixel| expected[pixel] == seen.kind(pixel));
+            lines.extend(is("the picture is that of one plane", same));
+        }
+        lines.truncate(3);
+        lines
+    }
+    // Planes along the rays without effect; only the first plane of all.
+    let along = kernel(
+        "lib/clip.clh",
+        &[("if (height < 0.0f)", "if (height < -INFINITY)")],
+    );
+    let first = kernel(
+        "lib/clip.clh",
+        &[("i < count &&", "i < 1u && i < count &&")],
+    );
+    judge(
+        "volumes::clip_planes",
+        "clip-planes",
+        truth,
+        &[along, first],
+    );
 }

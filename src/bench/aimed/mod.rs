@@ -41,7 +41,7 @@ pub struct Tally {
     pub borderline: u64,
     /// Answers that are not proven.
     pub undecided: u64,
-    /// Answers that are proven and yet not the reference's.
+    /// Answers that are proven and yet not the reference's, where that is certain of its own.
     pub wrongly_proven: u64,
     /// Of answers that agree, in voxels.
     pub most_apart: f64,
@@ -205,7 +205,9 @@ fn judge_one(
         rays: 1,
         hits: u64::from(hit),
         undecided: u64::from(proven.is_none()),
-        wrongly_proven: u64::from(proven.is_some_and(|proven| proven != hit)),
+        wrongly_proven: u64::from(
+            proven.is_some_and(|proven| proven != hit) && judge.is_certain(ray, truth),
+        ),
         ..Tally::default()
     };
     match verdict {

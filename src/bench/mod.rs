@@ -22,11 +22,15 @@ pub use specimen::Specimen;
 pub use table::{Cell, Column, Shown, Table};
 pub use verdict::{Judge, Met, Verdict};
 
+use interleaved::{Times, interleaved};
+
 use crate::error::{Error, Result};
+use crate::frame::Wanted;
 use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{Options, Renderer};
+use crate::scene::Scene;
 
 /// What an experiment is given to work with.
 pub struct Bench<'a> {
@@ -47,6 +51,24 @@ impl Bench<'_> {
 
     fn renderer<'a>(&'a self, specimen: &'a Specimen, octree: &'a Octree) -> Result<Renderer<'a>> {
         Renderer::new(self.device, &specimen.volume, octree, self.options)
+    }
+
+    /// How long the device takes for each of `scenes`: pictures for display, of which nothing else
+    /// is asked.
+    fn times(&self, renderer: &mut Renderer, scenes: &[Scene]) -> Result<Vec<Times>> {
+        let wanted = Wanted {
+            display: true,
+            ..Wanted::default()
+        };
+        let repeats = self.effort.repeats();
+        let renderings = scenes.len() * (repeats + 1);
+        self.progress.begin("timing", renderings as u64);
+        let times = interleaved(scenes, repeats, |scene| {
+            self.progress.advance(1);
+            Ok(renderer.render(scene, wanted)?.render_ms)
+        });
+        self.progress.end();
+        times
     }
 }
 

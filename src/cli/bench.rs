@@ -8,6 +8,7 @@ use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Results, Specimen};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::render::Options;
+use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::{FilePath, Switch, VolumeOptions};
 
@@ -188,7 +189,8 @@ fn specimen(path: &Path, progress: &dyn Progress) -> Result<Specimen> {
     };
     note(format_args!(
         "{}: iso = {}, suggested by the histogram",
-        specimen.name, specimen.iso
+        specimen.name,
+        concise(specimen.iso)
     ));
     specimen.check()?;
     Ok(specimen)

@@ -9,6 +9,7 @@ use crate::frame::error::normal_error;
 use crate::frame::{Frame, Wanted};
 use crate::reference;
 use crate::render::Rendering;
+use crate::scene::options::concise;
 use crate::scene::{Gradient, Precomputed, Scene};
 use crate::volume::PhantomKind;
 
@@ -124,7 +125,7 @@ fn measure(
     outcome.findings.push(format!(
         "{}: at {}, {} normals compared",
         specimen.name,
-        specimen.iso,
+        concise(specimen.iso),
         normal_error(&truth, &renderings[0].frame)?.compared
     ));
     Ok(())

@@ -1,7 +1,7 @@
 //! The ways through the octree as rivals: the same pictures, at what cost.
 
 use super::super::compare::same_picture;
-use super::super::interleaved::{Times, interleaved};
+use super::super::interleaved::Times;
 use super::super::{Bench, Experiment, Outcome, Shown, Specimen, Table};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
@@ -56,19 +56,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 .iter()
                 .map(|scene| Ok(renderer.render(scene, Wanted::ALL)?.frame))
                 .collect::<Result<_>>()?;
-            let display = Wanted {
-                display: true,
-                ..Wanted::default()
-            };
-            let repeats = bench.effort.repeats();
-            bench
-                .progress
-                .begin("timing", (scenes.len() * (repeats + 1)) as u64);
-            let times = interleaved(&scenes, repeats, |scene| {
-                bench.progress.advance(1);
-                Ok(renderer.render(scene, display)?.render_ms)
-            })?;
-            bench.progress.end();
+            let times = bench.times(&mut renderer, &scenes)?;
             for (log, times_of) in logs.iter_mut().zip(&times) {
                 *log += times_of.over(&times[place(RIVAL)]).ln();
             }

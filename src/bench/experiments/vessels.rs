@@ -1,13 +1,14 @@
 //! What fixed steps lose of thin vessels and of real angiograms, and what exact casting costs.
 
 use super::super::borderline::Borderline;
-use super::super::interleaved::{Times, interleaved};
+use super::super::interleaved::Times;
 use super::super::{Bench, Cell, Experiment, Outcome, Shown, Specimen, Table};
 use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
 use crate::frame::{Frame, Wanted};
 use crate::reference;
 use crate::render::Renderer;
+use crate::scene::options::concise;
 use crate::scene::{Picture, Refine, SamplingMethod, Scene};
 
 pub const EXPERIMENT: Experiment = Experiment {
@@ -133,8 +134,11 @@ fn run(bench: &Bench) -> Result<Outcome> {
         let exact = &tabulate(&mut outcome.table, specimen, &measured);
         costs.add(&measured);
         outcome.findings.push(format!(
-            "{}: at {}, {} rays hit; where a hair decides ({} rays) nothing is counted",
-            specimen.name, specimen.iso, exact.reference_hits, measured.borderline
+            "{}: {} rays hit at {}; {} are not judged, for 1e-4 voxel beside them the reference meets something else",
+            specimen.name,
+            exact.reference_hits,
+            concise(specimen.iso),
+            measured.borderline
         ));
         if exact.missed + exact.extra > 0 {
             outcome.failure = Some(format!(
@@ -228,7 +232,7 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
         borderline.excuse(&truth, frame);
         depth_error(&truth, frame, voxel_mm)
     })?;
-    let iso_times = times(bench, &mut renderer, &scenes)?;
+    let iso_times = bench.times(&mut renderer, &scenes)?;
 
     let projection = specimen.maximum(side_px)?;
     let methods = Method::all().into_iter();
@@ -242,7 +246,7 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
     let value_errors = errors(&mut renderer, &scenes, value, |frame| {
         value_error(&truth, frame, width)
     })?;
-    let mip_times = times(bench, &mut renderer, &scenes)?;
+    let mip_times = bench.times(&mut renderer, &scenes)?;
     Ok(Measured {
         iso: depth_errors.into_iter().zip(iso_times).collect(),
         mip: value_errors.into_iter().zip(mip_times).collect(),
@@ -259,24 +263,6 @@ fn errors<E>(
     let scenes = scenes.iter();
     let errors = scenes.map(|scene| error(&mut renderer.render(scene, wanted)?.frame));
     errors.collect()
-}
-
-/// Of pictures for display, of which nothing else is asked.
-fn times(bench: &Bench, renderer: &mut Renderer, scenes: &[Scene]) -> Result<Vec<Times>> {
-    let wanted = Wanted {
-        display: true,
-        ..Wanted::default()
-    };
-    let repeats = bench.effort.repeats();
-    bench
-        .progress
-        .begin("timing", (scenes.len() * (repeats + 1)) as u64);
-    let times = interleaved(scenes, repeats, |scene| {
-        bench.progress.advance(1);
-        Ok(renderer.render(scene, wanted)?.render_ms)
-    });
-    bench.progress.end();
-    times
 }
 
 /// What exact casting costs, as ratios, one a volume.

@@ -42,7 +42,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
     }
     // The controls: keys that no command has.
-    for key in ["scene", "help", "phantom", "quadrature"] {
+    for key in ["scene", "help", "phantom", "sparse"] {
         place.write("keys.toml", &format!("\n{key} = 1\n"));
         for command in ["render", "bench", "info", "phantom", "devices"] {
             let said = place.refused(&format!("{command} --scene keys.toml"), 2);

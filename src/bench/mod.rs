@@ -53,6 +53,16 @@ impl Bench<'_> {
         Renderer::new(self.device, &specimen.volume, octree, self.options)
     }
 
+    /// What times stand for, for the findings.
+    fn timed(&self) -> String {
+        let (side_px, repeats) = (self.effort.side_px(), self.effort.repeats());
+        format!(
+            "times are the least and the median of {repeats} repeats in turn of pictures of \
+             {side_px}x{side_px} pixels, on {}; ratios are the medians of each repeat's own",
+            self.device.info().name
+        )
+    }
+
     /// How long the device takes for each of `scenes`: pictures for display, of which nothing else
     /// is asked.
     fn times(&self, renderer: &mut Renderer, scenes: &[Scene]) -> Result<Vec<Times>> {

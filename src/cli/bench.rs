@@ -146,12 +146,7 @@ impl BenchArguments {
             .output
             .map(|FilePath(path)| Results::in_folder(&path));
         let results = results.transpose()?;
-        message(format_args!(
-            "bench {name}: {side}x{side} pixels, {} repeats, on {}",
-            effort.repeats(),
-            device.info().name,
-            side = effort.side_px(),
-        ));
+        message(format_args!("bench {name} on {}", device.info().name));
         let outcome = (experiment.run)(&bench)?;
         to_stdout(|out| {
             writeln!(out, "{}", outcome.table.markdown())?;

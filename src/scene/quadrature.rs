@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
+use super::SamplingMethod;
+
 /// The rule. All but `Adaptive` work on panels between two samples of the fixed step; each is
 /// exact for a constant medium, and its colours and opacities never leave 0..1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -59,6 +61,15 @@ impl Quadrature {
             _ => 0.0,
         };
         Self { method, bound }
+    }
+
+    /// How the rule samples: at fixed steps, or wherever its bound needs it.
+    pub fn sampling(self) -> SamplingMethod {
+        if self.is_stepped() {
+            SamplingMethod::Fixed
+        } else {
+            SamplingMethod::Exact
+        }
     }
 
     /// Whether the rule samples at a fixed step.

@@ -61,6 +61,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
     for specimen in &bench.specimens {
         measure(bench, specimen, None, &mut outcome)?;
     }
+    outcome.findings.push(bench.timed());
     Ok(outcome)
 }
 

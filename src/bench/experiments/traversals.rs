@@ -77,6 +77,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
         "{} is the fastest of all, by the mean of the ratios",
         fastest(logs)
     ));
+    outcome.findings.push(bench.timed());
     Ok(outcome)
 }
 

@@ -148,6 +148,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
         }
     }
     outcome.findings.extend(costs.findings());
+    outcome.findings.push(bench.timed());
     Ok(outcome)
 }
 

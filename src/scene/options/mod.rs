@@ -43,7 +43,7 @@ pub use words::{GradientMethod, Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
-use crate::scene::{SamplingMethod, Scene, TransferFile};
+use crate::scene::{Quadrature, QuadratureMethod, SamplingMethod, Scene, TransferFile};
 
 /// Everything that determines a picture, as far as it was said.
 #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
@@ -84,9 +84,17 @@ impl SceneOptions {
     #[must_use]
     pub fn over(self, mut file: Self) -> Self {
         match self.sampling.sampling {
-            None if self.steps_given() => file.sampling.sampling = None,
-            Some(SamplingMethod::Exact) => file = file.without_steps(),
-            _ => {}
+            None if self.steps_given() || self.picture.quad.is_some() => {
+                file.sampling.sampling = None;
+            }
+            None => {}
+            Some(method) => {
+                let of_method = |quad: &Quadrature| quad.sampling() == method;
+                file.picture.quad = file.picture.quad.filter(of_method);
+                if method == SamplingMethod::Exact {
+                    file = file.without_steps();
+                }
+            }
         }
         Self {
             volume: self.volume.over(file.volume),
@@ -109,14 +117,16 @@ impl SceneOptions {
     /// cannot be read.
     pub fn checked(mut self) -> Result<Self> {
         self.camera.check()?;
-        self.picture.check()?;
+        self.integrated_picture().check()?;
         self.clip.check()?;
-        if self.picture.mode() == Mode::Dvr && self.sampling.sampling == Some(SamplingMethod::Exact)
+        if let (Some(method), Some(quad)) = (self.sampling.sampling, self.picture.quad)
+            && quad.sampling() != method
         {
-            return Err(Error::usage(
-                "'sampling = exact' does not go with mode 'dvr': an integral is approached, not solved",
-            )
-            .hint("choose a smaller --step"));
+            return Err(Error::usage(format!(
+                "'sampling' = {method} does not go with 'quad' = {quad}, which is {}",
+                quad.sampling()
+            ))
+            .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
         }
         if let Some(choice) = self.picture.tf.take() {
             self.picture.tf = Some(TransferChoice::Written(choice.read()?));
@@ -132,13 +142,13 @@ impl SceneOptions {
         let method = self.method();
         let mut options = Self {
             volume: self.volume.clone().filled(),
-            picture: self.picture.clone().filled(subject)?,
+            picture: self.integrated_picture().filled(subject)?,
             camera: self.camera.clone().filled(subject)?,
             clip: self.clip.clone().filled()?,
             sampling: self.sampling.clone().filled(method)?,
             tone: self.tone.clone().filled()?,
         };
-        if method == Some(SamplingMethod::Exact) {
+        if method == SamplingMethod::Exact {
             options = options.without_steps();
         }
         let scene = Scene {
@@ -160,17 +170,35 @@ impl SceneOptions {
     }
 
     /// How surfaces and projections are sampled: exactly, unless steps are asked for by their name
-    /// or by what belongs to them. Emission and absorption is integrated, not looked for.
-    fn method(&self) -> Option<SamplingMethod> {
+    /// or by what belongs to them. Emission and absorption is sampled as its quadrature is.
+    fn method(&self) -> SamplingMethod {
         if self.picture.mode() == Mode::Dvr {
-            return None;
+            return self.quadrature().sampling();
         }
         let implied = if self.steps_given() {
             SamplingMethod::Fixed
         } else {
             SamplingMethod::default()
         };
-        Some(self.sampling.sampling.unwrap_or(implied))
+        self.sampling.sampling.unwrap_or(implied)
+    }
+
+    /// How emission and absorption is integrated: within a bound where exact sampling is asked for.
+    fn quadrature(&self) -> Quadrature {
+        let implied = match self.sampling.sampling {
+            Some(SamplingMethod::Exact) => Quadrature::of(QuadratureMethod::Adaptive),
+            _ => Quadrature::default(),
+        };
+        self.picture.quad.unwrap_or(implied)
+    }
+
+    /// The picture, in dvr with its quadrature, which exact sampling implies.
+    fn integrated_picture(&self) -> PictureOptions {
+        let dvr = self.picture.mode() == Mode::Dvr;
+        PictureOptions {
+            quad: self.picture.quad.or(dvr.then(|| self.quadrature())),
+            ..self.picture.clone()
+        }
     }
 
     /// Whether something is said that only fixed steps have.
@@ -188,10 +216,14 @@ impl SceneOptions {
 
     fn notes(&self, filled: &Self, subject: &Subject) -> Vec<String> {
         let mut notes = Vec::new();
-        if filled.sampling.sampling == Some(SamplingMethod::Exact) && self.steps_given() {
-            notes.push(
-                "sampling = exact takes no steps: step, refine and probe have no effect".to_owned(),
-            );
+        if self.method() == SamplingMethod::Exact && self.steps_given() {
+            let what = match filled.picture.quad {
+                Some(quad) => format!("quad = {quad}"),
+                None => "sampling = exact".to_owned(),
+            };
+            notes.push(format!(
+                "{what} takes no steps: step, refine and probe have no effect"
+            ));
         }
         let given = &self.picture;
         let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {

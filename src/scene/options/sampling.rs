@@ -13,7 +13,8 @@ group! {
     pub struct SamplingOptions {
         /// Where a surface or a projected value is looked for: exact, solving the field in every
         /// cell on the way, so that nothing is missed; or fixed, at steps [default: exact; fixed
-        /// where --step, --refine or --probe is given]
+        /// where --step, --refine or --probe is given; in dvr exact is --quad adaptive, fixed all
+        /// others]
         #[arg(long, value_name = "fixed|exact")]
         sampling: SamplingMethod,
 
@@ -44,11 +45,11 @@ group! {
 }
 
 impl SamplingOptions {
-    /// With every default in its place; `method` is `None` for a picture that has no choice of it.
-    pub(super) fn filled(self, method: Option<SamplingMethod>) -> Result<Self> {
+    /// With every default in its place.
+    pub(super) fn filled(self, method: SamplingMethod) -> Result<Self> {
         let default = Sampling::default();
         Ok(Self {
-            sampling: method,
+            sampling: Some(method),
             step: match self.step {
                 Some(step) => Some(step),
                 None => Some(StepVoxels::new(default.step_voxels)?),

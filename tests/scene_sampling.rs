@@ -1,0 +1,123 @@
+//! Which sampling a scene has: what is asked for, what that implies, and what goes with it.
+
+use angioray::extent::Range;
+use angioray::scene::{
+    Emission, Picture, QuadratureMethod, Resolved, SamplingMethod, SceneOptions, Subject,
+};
+use glam::DVec3;
+
+const SUBJECT: Subject = Subject {
+    center_world: DVec3::ZERO,
+    radius_mm: 10.0,
+    range: Range {
+        min: 0.0,
+        max: 255.0,
+    },
+    otsu: 40.0,
+    suggested_iso: 120.0,
+};
+
+fn options(text: &str) -> SceneOptions {
+    SceneOptions::parse(text, "scene.toml").unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn resolved(options: &SceneOptions) -> Resolved {
+    let checked = options.clone().checked().unwrap();
+    checked.resolve(&SUBJECT).unwrap()
+}
+
+fn method(text: &str) -> SamplingMethod {
+    resolved(&options(text)).scene.sampling.method
+}
+
+fn quadrature(options: &SceneOptions) -> QuadratureMethod {
+    match resolved(options).scene.picture {
+        Picture::Emission(Emission { quadrature, .. }) => quadrature.method,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn sampling_is_exact_unless_steps_are_asked_for() {
+    for exact in ["", "mode = 'mip'", "mode = 'lmip'", "sampling = 'exact'"] {
+        assert_eq!(method(exact), SamplingMethod::Exact, "{exact}");
+    }
+    for fixed in [
+        "sampling = 'fixed'",
+        "step = 0.25",
+        "refine = 'newton'",
+        "mode = 'mip'\nprobe = 'off'",
+    ] {
+        assert_eq!(method(fixed), SamplingMethod::Fixed, "{fixed}");
+    }
+}
+
+#[test]
+fn steps_beside_exact_sampling_are_told_to_have_no_effect() {
+    let told = |text: &str| {
+        let notes = resolved(&options(text)).notes;
+        notes.iter().any(|note| note.contains("no effect"))
+    };
+    assert!(told("sampling = 'exact'\nstep = 0.25"));
+    assert!(told("mode = 'dvr'\nquad = 'adaptive'\nstep = 0.25"));
+    assert!(!told("sampling = 'fixed'\nstep = 0.25"));
+    assert!(!told("sampling = 'exact'"));
+}
+
+#[test]
+fn in_dvr_exact_sampling_is_the_adaptive_quadrature() {
+    let of = |text: &str| quadrature(&options(text));
+    assert_eq!(of("mode = 'dvr'"), QuadratureMethod::Simpson);
+    let exact = "mode = 'dvr'\nsampling = 'exact'";
+    assert_eq!(of(exact), QuadratureMethod::Adaptive);
+    let contradictions = [
+        ("quad = 'simpson'", "exact"),
+        ("quad = 'adaptive'", "fixed"),
+    ];
+    for (quad, sampling) in contradictions {
+        let text = format!("mode = 'dvr'\nsampling = '{sampling}'\n{quad}");
+        let said = options(&text).checked().unwrap_err().to_string();
+        assert!(said.contains("does not go with 'quad'"), "{said}");
+    }
+}
+
+#[test]
+fn a_flag_drops_what_of_the_file_it_rules_out() {
+    let over = |flag: &str, file: &str| resolved(&options(flag).over(options(file)));
+    let method = |flag, file| over(flag, file).scene.sampling.method;
+    assert_eq!(
+        method("step = 1", "sampling = 'exact'"),
+        SamplingMethod::Fixed
+    );
+    assert_eq!(
+        method("sampling = 'exact'", "step = 1"),
+        SamplingMethod::Exact
+    );
+    let notes = over("sampling = 'exact'", "step = 1").notes;
+    assert!(!notes.iter().any(|note| note.contains("no effect")));
+    let dvr = |flag: &str, file: &str| quadrature(&options(flag).over(options(file)));
+    let adaptive = "mode = 'dvr'\nquad = 'adaptive'";
+    assert_eq!(
+        dvr("sampling = 'fixed'", adaptive),
+        QuadratureMethod::Simpson
+    );
+    assert_eq!(dvr("quad = 'rk4'", adaptive), QuadratureMethod::Rk4);
+    let exact = "mode = 'dvr'\nsampling = 'exact'";
+    assert_eq!(dvr("quad = 'rk4'", exact), QuadratureMethod::Rk4);
+}
+
+#[test]
+fn what_is_resolved_reads_back_as_the_same_scene() {
+    for text in [
+        "",
+        "step = 0.25",
+        "mode = 'dvr'",
+        "mode = 'dvr'\nquad = 'adaptive:1e-4'",
+        "mode = 'mean'\nsampling = 'fixed'",
+    ] {
+        let first = resolved(&options(text));
+        let again = resolved(&options(&first.options.to_toml().unwrap()));
+        assert_eq!(again.scene, first.scene, "{text}");
+        assert_eq!(again.options, first.options, "{text}");
+    }
+}

@@ -18,7 +18,7 @@ fn help_and_version_go_to_stdout() {
         place.done("--version").trim(),
         concat!("angioray ", env!("CARGO_PKG_VERSION"))
     );
-    for command in ["render", "info", "phantom", "devices"] {
+    for command in ["render", "bench", "info", "phantom", "devices"] {
         let help = place.done(&format!("{command} --help"));
         let (_, examples) = help.split_once("Example:").unwrap();
         assert!(examples.contains(&format!("angioray {command}")), "{help}");

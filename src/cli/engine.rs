@@ -68,6 +68,12 @@ impl FromStr for DeviceName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkGroup([usize; 2]);
 
+impl From<WorkGroup> for [usize; 2] {
+    fn from(WorkGroup(sides): WorkGroup) -> Self {
+        sides
+    }
+}
+
 impl FromStr for WorkGroup {
     type Err = Error;
 
@@ -140,7 +146,7 @@ impl Engine {
                 let octree = Octree::build(volume, source.leaf, progress)?;
                 let octree_ms = ms_since(began);
                 let options = Options {
-                    work_group: work_group.map(|WorkGroup(sides)| sides),
+                    work_group: work_group.map(Into::into),
                 };
                 progress.begin("rendering", UNKNOWN_TOTAL);
                 let rendering =

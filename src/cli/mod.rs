@@ -1,5 +1,6 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
+mod bench;
 mod devices;
 mod engine;
 mod hardcase;
@@ -40,6 +41,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
     Devices(devices::DevicesArguments),
@@ -49,6 +51,7 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),
             Self::Devices(arguments) => arguments.run(),

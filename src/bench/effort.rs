@@ -1,0 +1,30 @@
+//! How much an experiment does: larger pictures and more repeats make steadier figures.
+
+/// Chosen by `--quick` and `--full`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Effort {
+    Quick,
+    #[default]
+    Usual,
+    Full,
+}
+
+impl Effort {
+    /// Width and height of the pictures.
+    pub fn side_px(self) -> u32 {
+        match self {
+            Self::Quick => 128,
+            Self::Usual => 256,
+            Self::Full => 512,
+        }
+    }
+
+    /// How often each setting is timed.
+    pub fn repeats(self) -> usize {
+        match self {
+            Self::Quick => 3,
+            Self::Usual => 5,
+            Self::Full => 7,
+        }
+    }
+}

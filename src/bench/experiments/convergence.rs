@@ -1,0 +1,55 @@
+//! The rules that sum light along a ray: with what order they converge.
+
+use super::super::convergence::{ORDERS, Smooth, errors, halvings, observed_order};
+use super::super::{Bench, Experiment, Outcome, Shown, Table};
+use crate::error::Result;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "convergence",
+    about: "the observed order of each quadrature rule of emission and absorption, on a path along \
+            which the field is linear and on one along which it is a cubic",
+    takes_volumes: false,
+    counts_rays: false,
+    run,
+};
+
+const COLUMNS: [(&str, &str, Shown); 9] = [
+    ("path", "field", Shown::Short),
+    ("rule", "rule", Shown::Short),
+    ("known_order", "order, known", Shown::Fixed(0)),
+    ("color_order", "of colour", Shown::Fixed(2)),
+    ("opacity_order", "of opacity", Shown::Fixed(2)),
+    ("error_1", "colour error, 1 panel", Shown::Short),
+    ("error_4", "4 panels", Shown::Short),
+    ("error_16", "16", Shown::Short),
+    ("error_64", "64", Shown::Short),
+];
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let mut table = Table::new(&COLUMNS);
+    for smooth in [Smooth::ramp()?, Smooth::cubic()?] {
+        for (method, order) in ORDERS {
+            let errors = errors(bench.device, &smooth, method, &halvings())?;
+            table.push(vec![
+                smooth.name.into(),
+                method.to_string().into(),
+                order.into(),
+                observed_order(&errors.color, order).into(),
+                observed_order(&errors.opacity, order).into(),
+                errors.color[0].into(),
+                errors.color[2].into(),
+                errors.color[4].into(),
+                errors.color[6].into(),
+            ]);
+        }
+    }
+    Ok(Outcome {
+        table,
+        findings: vec![
+            "an order is the slope of the error's logarithm between two steps, one half of the other, \
+             above what rounding leaves; none where the errors are below that at once"
+                .into(),
+        ],
+        failure: None,
+    })
+}

@@ -1,0 +1,81 @@
+//! The adversarial test at any length: rays aimed where a cast loses surfaces.
+
+use super::super::aimed::{self, Aim, Tally};
+use super::super::{Bench, Cell, Effort, Experiment, Outcome, Shown, Table};
+use crate::error::Result;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "rays",
+    about: "rays aimed at edges, corners, faces and tangents of random cells, every answer of the \
+            exact cast held against the reference; fails where one is wrong",
+    takes_volumes: false,
+    counts_rays: true,
+    run,
+};
+
+/// Decides the volumes and the rays.
+const SEED: u64 = 4;
+
+const COLUMNS: [(&str, &str, Shown); 10] = [
+    ("aim", "aimed at", Shown::Short),
+    ("rays", "rays", Shown::Fixed(0)),
+    ("hits", "hits", Shown::Fixed(0)),
+    ("missed", "missed", Shown::Fixed(0)),
+    ("extra", "extra", Shown::Fixed(0)),
+    ("displaced", "displaced", Shown::Fixed(0)),
+    ("wrongly_proven", "wrongly proven", Shown::Fixed(0)),
+    ("borderline", "borderline", Shown::Fixed(0)),
+    ("undecided", "undecided", Shown::Fixed(0)),
+    ("most_apart_voxels", "depth max, voxels", Shown::Short),
+];
+
+fn count(bench: &Bench) -> u64 {
+    bench.rays.unwrap_or(match bench.effort {
+        Effort::Quick => 1_000_000,
+        Effort::Usual => 10_000_000,
+        Effort::Full => 100_000_000,
+    })
+}
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let report = aimed::run(bench.device, SEED, count(bench), bench.progress)?;
+    let total = report.total();
+    let mut table = Table::new(&COLUMNS);
+    let named = Aim::ALL.into_iter().map(Aim::name).zip(report.tallies);
+    for (aim, tally) in named.chain([("all", total)]) {
+        table.push(row(aim, &tally));
+    }
+    let mut findings = vec![format!(
+        "{} of {} rays wrong; {} borderline: the reference itself answers so a hair beside them",
+        total.wrong(),
+        total.rays,
+        total.borderline
+    )];
+    findings.extend(report.wrong);
+    Ok(Outcome {
+        table,
+        findings,
+        failure: (total.wrong() > 0).then(|| {
+            format!(
+                "{} of {} rays were answered wrong",
+                total.wrong(),
+                total.rays
+            )
+        }),
+    })
+}
+
+fn row(aim: &str, tally: &Tally) -> Vec<Cell> {
+    vec![
+        aim.into(),
+        tally.rays.into(),
+        tally.hits.into(),
+        tally.missed.into(),
+        tally.extra.into(),
+        tally.displaced.into(),
+        tally.wrongly_proven.into(),
+        tally.borderline.into(),
+        tally.undecided.into(),
+        tally.most_apart.into(),
+    ]
+}

@@ -1,0 +1,323 @@
+//! What fixed steps lose of thin vessels and of real angiograms, and what exact casting costs.
+
+use super::super::borderline::Borderline;
+use super::super::interleaved::Times;
+use super::super::{Bench, Cell, Experiment, Outcome, Shown, Specimen, Table};
+use crate::error::Result;
+use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
+use crate::frame::{Frame, Wanted};
+use crate::reference;
+use crate::render::Renderer;
+use crate::scene::options::concise;
+use crate::scene::{Picture, Refine, SamplingMethod, Scene};
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "vessels",
+    about: "hits missed, errors and times of fixed steps and of exact casting, on straight vessels of \
+            four radii and on the volumes named",
+    takes_volumes: true,
+    counts_rays: false,
+    run,
+};
+
+/// Voxels.
+const RADII: [f64; 4] = [0.5, 0.75, 1.0, 2.5];
+/// In each volume.
+const VESSELS: usize = 8;
+/// Voxels.
+const STEPS: [f64; 4] = [2.0, 1.0, 0.5, 0.25];
+const REFINERS: [&str; 5] = [
+    "none",
+    "bisection:6",
+    "regula-falsi:5",
+    "illinois:5",
+    "newton:3",
+];
+/// What exact surfaces are held against.
+const ISO_RIVAL: Method = Method::Steps(0.5, false);
+const ISO_RIVAL_REFINER: &str = "regula-falsi:5";
+/// What exact projections are held against.
+const MIP_RIVAL: Method = Method::Steps(0.25, false);
+
+/// Where a ray is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Method {
+    /// At steps of so many voxels; with or without a look between them.
+    Steps(f64, bool),
+    Exact,
+}
+
+impl Method {
+    /// Fixed steps as in the papers, one step as it is by default, exact.
+    fn all() -> Vec<Self> {
+        let plain = STEPS.map(|step| Self::Steps(step, false));
+        let others = [Self::Steps(0.5, true), Self::Exact];
+        plain.into_iter().chain(others).collect()
+    }
+
+    fn refiners(self) -> &'static [&'static str] {
+        match self {
+            Self::Steps(_, false) => &REFINERS,
+            Self::Steps(_, true) | Self::Exact => &[ISO_RIVAL_REFINER],
+        }
+    }
+
+    fn of(self, mut scene: Scene) -> Scene {
+        match self {
+            Self::Exact => scene.sampling.method = SamplingMethod::Exact,
+            Self::Steps(step_voxels, probe) => {
+                scene.sampling.method = SamplingMethod::Fixed;
+                scene.sampling.step_voxels = step_voxels;
+                scene.sampling.probe = probe;
+            }
+        }
+        scene
+    }
+}
+
+/// A method and a refiner, which exact casting has none of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Setting {
+    method: Method,
+    refiner: &'static str,
+}
+
+impl Setting {
+    fn all() -> Vec<Self> {
+        let of = |method: Method| {
+            let refiners = method.refiners().iter();
+            refiners.map(move |&refiner| Self { method, refiner })
+        };
+        Method::all().into_iter().flat_map(of).collect()
+    }
+
+    fn name(self) -> String {
+        match self.method {
+            Method::Exact => "exact".into(),
+            Method::Steps(step, probe) => {
+                let probe = if probe { ", probe" } else { "" };
+                format!("step {step}, {}{probe}", self.refiner)
+            }
+        }
+    }
+
+    fn of(self, scene: Scene) -> Result<Scene> {
+        let mut scene = self.method.of(scene);
+        if let Picture::Surface { refine, .. } = &mut scene.picture {
+            *refine = self.refiner.parse::<Refine>()?;
+        }
+        Ok(scene)
+    }
+}
+
+/// One volume's figures.
+struct Measured {
+    /// In the order of [`Setting::all`].
+    iso: Vec<(DepthError, Times)>,
+    /// In the order of [`Method::all`].
+    mip: Vec<(ValueError, Times)>,
+    /// Pixels on which a hair decides, of all at which a setting differed from the reference.
+    borderline: usize,
+}
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let vessels = RADII.map(|radius| Specimen::straight_vessels(radius, VESSELS));
+    let vessels: Vec<Specimen> = vessels.into_iter().collect::<Result<_>>()?;
+    let mut outcome = Outcome {
+        table: Table::new(&COLUMNS),
+        findings: Vec::new(),
+        failure: None,
+    };
+    let mut costs = Costs::default();
+    for specimen in vessels.iter().chain(&bench.specimens) {
+        let measured = measure(bench, specimen)?;
+        let exact = &tabulate(&mut outcome.table, specimen, &measured);
+        costs.add(&measured);
+        outcome.findings.push(format!(
+            "{}: {} rays hit at {}; {} are not judged, for 1e-4 voxel beside them the reference meets something else",
+            specimen.name,
+            exact.reference_hits,
+            concise(specimen.iso),
+            measured.borderline
+        ));
+        if exact.missed + exact.extra > 0 {
+            outcome.failure = Some(format!(
+                "{}: exact casting missed {} hits and invented {}",
+                specimen.name, exact.missed, exact.extra
+            ));
+        }
+    }
+    outcome.findings.extend(costs.findings());
+    outcome.findings.push(bench.timed());
+    Ok(outcome)
+}
+
+const COLUMNS: [(&str, &str, Shown); 16] = [
+    ("volume", "volume", Shown::Short),
+    ("method", "method", Shown::Short),
+    ("missed_share", "missed hits, %", Shown::Percent(3)),
+    ("extra_share", "extra hits, %", Shown::Percent(3)),
+    ("depth_p99_voxels", "depth p99, voxels", Shown::Short),
+    ("depth_max_voxels", "depth max, voxels", Shown::Short),
+    ("iso_min_ms", "iso ms, least", Shown::Fixed(2)),
+    ("iso_median_ms", "median", Shown::Fixed(2)),
+    ("iso_ratio", "to step 0.5", Shown::Fixed(2)),
+    ("mip_mean_share", "mip mean error, %", Shown::Percent(4)),
+    ("mip_p99_share", "mip p99, %", Shown::Percent(4)),
+    ("mip_min_ms", "mip ms, least", Shown::Fixed(2)),
+    ("mip_median_ms", "median", Shown::Fixed(2)),
+    ("mip_ratio", "to step 0.25", Shown::Fixed(2)),
+    ("missed", "missed", Shown::Fixed(0)),
+    ("hits", "of hits", Shown::Fixed(0)),
+];
+
+/// Appends a volume's rows; gives the surface's errors of exact casting.
+fn tabulate(table: &mut Table, specimen: &Specimen, measured: &Measured) -> DepthError {
+    let (settings, methods) = (Setting::all(), Method::all());
+    let iso_rival = &measured.iso[iso_rival()].1;
+    let mip_rival = &measured.mip[at(&methods, &MIP_RIVAL)].1;
+    for (setting, (depth, iso)) in settings.iter().zip(&measured.iso) {
+        let (value, mip) = &measured.mip[at(&methods, &setting.method)];
+        table.push(vec![
+            specimen.name.as_str().into(),
+            setting.name().into(),
+            depth.missed_share().into(),
+            depth.extra_share().into(),
+            depth.p99.into(),
+            depth.max.into(),
+            iso.min_ms().into(),
+            iso.median_ms().into(),
+            iso.over(iso_rival).into(),
+            value.mean.into(),
+            value.p99.into(),
+            mip.min_ms().into(),
+            mip.median_ms().into(),
+            mip.over(mip_rival).into(),
+            depth.missed.into(),
+            Cell::from(depth.reference_hits),
+        ]);
+    }
+    measured.iso[settings.len() - 1].0
+}
+
+/// Where a method or setting is in its list, all of which hold those that are looked for.
+fn at<T: PartialEq>(list: &[T], one: &T) -> usize {
+    list.iter().position(|other| other == one).unwrap_or(0)
+}
+
+fn iso_rival() -> usize {
+    let rival = Setting {
+        method: ISO_RIVAL,
+        refiner: ISO_RIVAL_REFINER,
+    };
+    at(&Setting::all(), &rival)
+}
+
+fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
+    let octree = bench.octree(specimen)?;
+    let mut renderer = bench.renderer(specimen, &octree)?;
+    let side_px = bench.effort.side_px();
+
+    let surface = specimen.surface(side_px)?;
+    let settings = Setting::all().into_iter();
+    let scenes = settings.map(|setting| setting.of(surface.clone()));
+    let scenes: Vec<Scene> = scenes.collect::<Result<_>>()?;
+    let depth = Wanted {
+        depth: true,
+        ..Wanted::default()
+    };
+    let truth = reference::render(&specimen.volume, &surface, depth, bench.progress)?;
+    let voxel_mm = specimen.volume.geometry().smallest_spacing_mm();
+    let mut borderline = Borderline::new(&specimen.volume, &surface)?;
+    let depth_errors = errors(&mut renderer, &scenes, depth, |frame| {
+        borderline.excuse(&truth, frame);
+        depth_error(&truth, frame, voxel_mm)
+    })?;
+    let iso_times = bench.times(&mut renderer, &scenes)?;
+
+    let projection = specimen.maximum(side_px)?;
+    let methods = Method::all().into_iter();
+    let scenes: Vec<Scene> = methods.map(|m| m.of(projection.clone())).collect();
+    let value = Wanted {
+        value: true,
+        ..Wanted::default()
+    };
+    let truth = reference::render(&specimen.volume, &projection, value, bench.progress)?;
+    let width = specimen.volume.range().width();
+    let value_errors = errors(&mut renderer, &scenes, value, |frame| {
+        value_error(&truth, frame, width)
+    })?;
+    let mip_times = bench.times(&mut renderer, &scenes)?;
+    Ok(Measured {
+        iso: depth_errors.into_iter().zip(iso_times).collect(),
+        mip: value_errors.into_iter().zip(mip_times).collect(),
+        borderline: borderline.count(),
+    })
+}
+
+fn errors<E>(
+    renderer: &mut Renderer,
+    scenes: &[Scene],
+    wanted: Wanted,
+    mut error: impl FnMut(&mut Frame) -> Result<E>,
+) -> Result<Vec<E>> {
+    let scenes = scenes.iter();
+    let errors = scenes.map(|scene| error(&mut renderer.render(scene, wanted)?.frame));
+    errors.collect()
+}
+
+/// What exact casting costs, as ratios, one a volume.
+#[derive(Default)]
+struct Costs {
+    iso: Vec<f64>,
+    probed: Vec<f64>,
+    mip: Vec<f64>,
+}
+
+impl Costs {
+    fn add(&mut self, measured: &Measured) {
+        let settings = Setting::all();
+        let (last, probed) = (settings.len() - 1, settings.len() - 2);
+        let exact = &measured.iso[last].1;
+        self.iso.push(exact.over(&measured.iso[iso_rival()].1));
+        self.probed.push(exact.over(&measured.iso[probed].1));
+        let methods = Method::all();
+        let exact = &measured.mip[at(&methods, &Method::Exact)].1;
+        let rival = &measured.mip[at(&methods, &MIP_RIVAL)].1;
+        self.mip.push(exact.over(rival));
+    }
+
+    fn findings(&self) -> [String; 3] {
+        let told = |what: &str, rival: &str, ratios: &[f64]| {
+            let logs: f64 = ratios.iter().map(|ratio| ratio.ln()).sum();
+            let mean = (logs / ratios.len() as f64).exp();
+            let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = ratios.iter().copied().fold(0.0, f64::max);
+            format!(
+                "exact {what} takes {mean:.2} times as long as {rival} ({least:.2} to {most:.2} by volume)"
+            )
+        };
+        let regula_falsi = format!("step 0.5 with {ISO_RIVAL_REFINER}");
+        [
+            told("iso", &regula_falsi, &self.iso),
+            told("iso", &format!("{regula_falsi} and probe"), &self.probed),
+            told("mip", "step 0.25", &self.mip),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_step_has_every_refiner_and_the_rivals_are_among_them() {
+        let names: Vec<String> = Setting::all().into_iter().map(Setting::name).collect();
+        assert_eq!(names.len(), STEPS.len() * REFINERS.len() + 2);
+        assert_eq!(names[iso_rival()], "step 0.5, regula-falsi:5");
+        assert_eq!(names[20], "step 0.5, regula-falsi:5, probe");
+        assert_eq!(names[21], "exact");
+        assert!(Method::all().contains(&MIP_RIVAL));
+        assert!(REFINERS.iter().all(|name| name.parse::<Refine>().is_ok()));
+    }
+}

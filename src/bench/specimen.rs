@@ -1,0 +1,155 @@
+//! A volume under examination, and the scenes in which it is examined.
+
+use glam::DVec3;
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::error::{Error, Result};
+use crate::extent::Dims;
+use crate::scene::{Emission, Knot, Picture, Rgb, Scene, SceneOptions, Subject, TransferFunction};
+use crate::volume::{
+    Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
+};
+
+/// A volume, what it is called, and the surface that is looked at in it.
+#[derive(Debug)]
+pub struct Specimen {
+    pub name: String,
+    pub volume: Volume,
+    /// Physical.
+    pub iso: f64,
+}
+
+impl Specimen {
+    /// What the pictures of all experiments have in common: from where no voxel axis lies along or
+    /// across the picture.
+    const VIEW: &str = "azimuth = 30\nelevation = 20\n";
+
+    /// A scene of so many pixels along each side; `options` is text of a scene file.
+    ///
+    /// # Errors
+    /// What the text says is wrong, or cannot be of this volume.
+    pub(super) fn scene(&self, side_px: u32, options: &str) -> Result<Scene> {
+        let text = format!("{}size = [{side_px}, {side_px}]\n{options}", Self::VIEW);
+        let (center_world, radius_mm) = self.volume.bounding_sphere();
+        let subject = Subject {
+            center_world,
+            radius_mm,
+            range: self.volume.range(),
+            otsu: self.iso,
+            suggested_iso: self.iso,
+        };
+        let options = SceneOptions::parse(&text, "the experiment's scene")?.checked()?;
+        Ok(options.resolve(&subject)?.scene)
+    }
+
+    /// The surface at [`Specimen::iso`], unshaded, so that casts are what is timed and not normals.
+    pub(super) fn surface(&self, side_px: u32) -> Result<Scene> {
+        let iso = self.iso;
+        self.scene(
+            side_px,
+            &format!("mode = 'iso'\niso = {iso:?}\nshading = 'none'\n"),
+        )
+    }
+
+    /// The maximum along each ray, over the whole value range.
+    pub(super) fn maximum(&self, side_px: u32) -> Result<Scene> {
+        let range = self.volume.range();
+        let window = format!("window = [{:?}, {:?}]\n", range.min, range.max);
+        self.scene(side_px, &format!("mode = 'mip'\n{window}"))
+    }
+
+    /// Emission and absorption: transparent up to the iso value, opacity rising to a half of a voxel's
+    /// path at the largest value.
+    pub(super) fn emission(&self, side_px: u32) -> Result<Scene> {
+        let unit_length_mm = self.volume.geometry().smallest_spacing_mm();
+        let knot = |value, opacity| Knot {
+            value,
+            color: Rgb([0.9, 0.6, 0.4]),
+            opacity,
+        };
+        let most = self.volume.range().max.max(self.iso);
+        let transfer =
+            TransferFunction::new(vec![knot(self.iso, 0.0), knot(most, 0.5)], unit_length_mm)?;
+        let mut scene = self.scene(side_px, "mode = 'dvr'\n")?;
+        scene.picture = Picture::Emission(Emission::of(transfer));
+        Ok(scene)
+    }
+
+    /// `n` straight vessels of one radius, in voxels, in a u8 volume of 64³ voxels of 1 mm.
+    ///
+    /// A voxel is 255 · clamp(½ + radius − d, 0, 1) with d its centre's distance from the nearest
+    /// centreline, in voxels: the wall is one voxel wide, as the partial volume of a scanner's voxel
+    /// makes it, and lies where the field is half way, 127.5, the specimen's iso value. The
+    /// centrelines run through the whole volume, through random points of its middle half in random
+    /// directions.
+    ///
+    /// # Errors
+    /// None in practice: the volume is sound.
+    pub(super) fn straight_vessels(radius: f64, n: usize) -> Result<Self> {
+        const SIDE: u64 = 64;
+        const SEED: u64 = 7;
+        let mut draws = Pcg64::seed_from_u64(SEED);
+        let mut unit = || (draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        let lines: Vec<(DVec3, DVec3)> = (0..n)
+            .map(|_| {
+                let point = DVec3::new(unit(), unit(), unit()) * 0.5 + 0.25;
+                // Uniform on the sphere (Archimedes): height and turn are independent.
+                let (height, turn) = (2.0 * unit() - 1.0, std::f64::consts::TAU * unit());
+                let flat = (1.0 - height * height).sqrt();
+                let along = DVec3::new(flat * turn.cos(), flat * turn.sin(), height);
+                (point * (SIDE - 1) as f64, along)
+            })
+            .collect();
+        let value = |p: DVec3| {
+            let distance = |(on, along): &(DVec3, DVec3)| (p - *on).cross(*along).length();
+            let nearest = lines.iter().map(distance).fold(f64::INFINITY, f64::min);
+            (255.0 * (0.5 + radius - nearest).clamp(0.0, 1.0)).round() as u8
+        };
+        let at = |i: u64| {
+            DVec3::new(
+                (i % SIDE) as f64,
+                (i / SIDE % SIDE) as f64,
+                (i / SIDE / SIDE) as f64,
+            )
+        };
+        let voxels: Vec<u8> = (0..SIDE * SIDE * SIDE).map(|i| value(at(i))).collect();
+        Ok(Self {
+            name: format!("vessel of radius {radius}"),
+            volume: Volume::new(
+                Dims::new([SIDE; 3])?,
+                Voxels::from(voxels),
+                Geometry::default(),
+                Rescale::IDENTITY,
+                NonFinite::Refuse,
+            )?,
+            iso: 127.5,
+        })
+    }
+
+    /// A phantom at its default size, its surface half way.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(super) fn phantom(kind: PhantomKind) -> Result<Self> {
+        let dims = Dims::new([u64::from(kind.default_size()); 3])?;
+        let spec = PhantomSpec::new(kind, dims);
+        Ok(Self {
+            name: format!("{kind} phantom"),
+            volume: phantom(&spec)?.volume,
+            iso: spec.values().at(0.5),
+        })
+    }
+
+    /// # Errors
+    /// Usage: all voxels are equal, so that there is nothing to measure.
+    pub fn check(&self) -> Result<()> {
+        if self.volume.range().width() > 0.0 {
+            return Ok(());
+        }
+        Err(Error::usage(format!(
+            "{}: all voxels are equal, there is nothing to measure",
+            self.name
+        )))
+    }
+}

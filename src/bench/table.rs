@@ -1,0 +1,205 @@
+//! Tables of results: for reading (Markdown), for programs (CSV and JSON, unrounded).
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value};
+
+/// What stands in one place of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    Text(String),
+    Number(f64),
+    /// There is no such figure.
+    Nothing,
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+/// Counts beyond 2^53 are rounded.
+impl From<u64> for Cell {
+    fn from(count: u64) -> Self {
+        Self::Number(count as f64)
+    }
+}
+
+impl<T: Into<Self>> From<Option<T>> for Cell {
+    fn from(cell: Option<T>) -> Self {
+        cell.map_or(Self::Nothing, Into::into)
+    }
+}
+
+/// How a column's numbers are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// With so many digits behind the point.
+    Fixed(usize),
+    /// A share, times 100, with so many digits behind the point; one too small for them by its
+    /// power of ten.
+    Percent(usize),
+    /// Plain from a thousandth on, else by its power of ten.
+    Short,
+}
+
+impl Shown {
+    fn text(self, number: f64) -> String {
+        match self {
+            Self::Fixed(digits) => format!("{number:.digits$}"),
+            Self::Percent(digits) => {
+                let percent = 100.0 * number;
+                let least = 0.5 * 10_f64.powi(-(digits as i32));
+                if percent == 0.0 {
+                    "0".into()
+                } else if percent.abs() < least {
+                    format!("{percent:.0e}")
+                } else {
+                    format!("{percent:.digits$}")
+                }
+            }
+            Self::Short if number == 0.0 => "0".into(),
+            Self::Short if number.abs() < 1e-3 => format!("{number:.0e}"),
+            Self::Short => format!("{number:.3}"),
+        }
+    }
+}
+
+/// A column: its name for programs (unit behind it), for people, and how it is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column {
+    pub key: &'static str,
+    pub title: &'static str,
+    pub shown: Shown,
+}
+
+/// Rows of as many cells as there are columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// Of columns given as key, title and form.
+    pub fn new(columns: &[(&'static str, &'static str, Shown)]) -> Self {
+        let column = |&(key, title, shown)| Column { key, title, shown };
+        Self {
+            columns: columns.iter().map(column).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Appends a row; what is missing at its end is nothing, what is too much is left out.
+    pub fn push(&mut self, mut row: Vec<Cell>) {
+        row.resize(self.columns.len(), Cell::Nothing);
+        self.rows.push(row);
+    }
+
+    pub fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
+    }
+
+    /// For reading; numbers rounded as their columns say.
+    pub fn markdown(&self) -> String {
+        let mut text = String::from("|");
+        for column in &self.columns {
+            let _ = write!(text, " {} |", column.title);
+        }
+        text.push_str("\n|");
+        text.push_str(&"---|".repeat(self.columns.len()));
+        for row in &self.rows {
+            text.push_str("\n|");
+            for (column, cell) in self.columns.iter().zip(row) {
+                let _ = match cell {
+                    Cell::Text(text_of) => write!(text, " {} |", text_of.replace('|', "\\|")),
+                    Cell::Number(number) => write!(text, " {} |", column.shown.text(*number)),
+                    Cell::Nothing => write!(text, " – |"),
+                };
+            }
+        }
+        text.push('\n');
+        text
+    }
+
+    /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure.
+    pub fn csv(&self) -> String {
+        let keys = self.columns.iter().map(|column| column.key.to_owned());
+        let mut text = keys.collect::<Vec<_>>().join(",") + "\r\n";
+        for row in &self.rows {
+            let cells = row.iter().map(|cell| match cell {
+                Cell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+                    format!("\"{}\"", text.replace('"', "\"\""))
+                }
+                Cell::Text(text) => text.clone(),
+                Cell::Number(number) => number.to_string(),
+                Cell::Nothing => String::new(),
+            });
+            text.push_str(&(cells.collect::<Vec<_>>().join(",") + "\r\n"));
+        }
+        text
+    }
+
+    /// An object a row; unrounded, `null` where there is no figure.
+    pub fn json(&self) -> Value {
+        let object = |row: &Vec<Cell>| {
+            let pairs = self.columns.iter().zip(row).map(|(column, cell)| {
+                let value = match cell {
+                    Cell::Text(text) => Value::from(text.as_str()),
+                    Cell::Number(number) => Value::from(*number),
+                    Cell::Nothing => Value::Null,
+                };
+                (column.key.to_owned(), value)
+            });
+            Value::Object(pairs.collect::<Map<_, _>>())
+        };
+        self.rows.iter().map(object).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let mut table = Table::new(&[
+            ("name", "name", Shown::Short),
+            ("missed_share", "missed, %", Shown::Percent(2)),
+            ("ms", "ms", Shown::Fixed(1)),
+        ]);
+        table.push(vec!["a, \"b\"".into(), 0.123_456.into(), 2.25.into()]);
+        table.push(vec!["c|d".into(), 0.0.into()]);
+        table.push(vec!["e".into(), 3e-7.into(), None::<f64>.into()]);
+        table
+    }
+
+    #[test]
+    fn people_read_rounded_figures() {
+        let expected = "| name | missed, % | ms |\n|---|---|---|\n\
+            | a, \"b\" | 12.35 | 2.2 |\n| c\\|d | 0 | – |\n| e | 3e-5 | – |\n";
+        assert_eq!(table().markdown(), expected);
+    }
+
+    #[test]
+    fn programs_read_whole_figures() {
+        let expected =
+            "name,missed_share,ms\r\n\"a, \"\"b\"\"\",0.123456,2.25\r\nc|d,0,\r\ne,0.0000003,\r\n";
+        assert_eq!(table().csv(), expected);
+        let json = table().json();
+        assert_eq!(json[0]["missed_share"], 0.123_456);
+        assert_eq!(json[1]["ms"], Value::Null);
+    }
+}

@@ -1,0 +1,192 @@
+//! `angioray bench`.
+
+use std::path::Path;
+
+use clap::builder::StyledStr;
+
+use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Results, Specimen};
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+use crate::render::Options;
+use crate::scene::options::concise;
+use crate::scene::options::group::group;
+use crate::scene::{FilePath, Switch, VolumeOptions};
+
+use super::engine::{DeviceOptions, Engine};
+use super::load::Source;
+use super::progress::Bars;
+use super::scene::SceneArgument;
+use super::terminal::{message, note, to_stdout};
+
+/// Measure the renderer: speed against error, as a table
+#[derive(clap::Args)]
+#[command(override_usage = "angioray bench EXPERIMENT [VOLUME...] [OPTIONS]")]
+#[command(before_help = list())]
+#[command(after_help = "Example:
+  angioray bench vessels
+  angioray bench vessels head.nrrd cta.mha -o results --full
+  angioray bench traversals head_256x256x256_uint8.raw.gz")]
+pub struct BenchArguments {
+    #[command(flatten)]
+    bench: BenchOptions,
+
+    #[command(flatten)]
+    scene: SceneArgument,
+
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+group! {
+    /// What is measured, and how thoroughly.
+    pub struct BenchOptions {
+        /// The experiment's name
+        #[arg(value_name = "EXPERIMENT")]
+        experiment: String,
+
+        /// Volumes that are measured too, at the iso value that the histogram suggests; a
+        /// headerless one by what its name says, such as head_256x256x256_uint8.raw.gz
+        #[arg(value_name = "VOLUME")]
+        volumes: Vec<FilePath>,
+
+        /// Rays in the experiment rays [default: 10000000; a tenth of it with --quick, ten times as
+        /// many with --full]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        rays: u64,
+
+        /// A folder for the table as results.csv and results.json, unrounded; made where there is
+        /// none
+        #[arg(short, long, value_name = "DIR")]
+        output: FilePath,
+
+        /// Pictures of 128 pixels a side, 3 repeats [default: 256, 5 repeats]
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on", conflicts_with = "full")]
+        quick: Switch,
+
+        /// Pictures of 512 pixels a side, 7 repeats
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on")]
+        full: Switch,
+    }
+}
+
+/// The experiments, for the help.
+fn list() -> StyledStr {
+    let mut text = String::from("Experiments:");
+    for experiment in EXPERIMENTS {
+        text.push_str(&format!("\n  {}: {}", experiment.name, experiment.about));
+    }
+    text.into()
+}
+
+impl BenchArguments {
+    pub fn run(self) -> Result<()> {
+        let file = self.scene.open()?;
+        let mut of_file = file.group::<BenchOptions>()?;
+        of_file.output = of_file.output.map(|path| file.named_here(path));
+        let named_here = |volumes: Vec<FilePath>| {
+            let volumes = volumes.into_iter();
+            volumes.map(|volume| file.named_here(volume)).collect()
+        };
+        of_file.volumes = of_file.volumes.map(named_here);
+        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over(device);
+        let options = self.bench.over(of_file);
+
+        let Some(name) = &options.experiment else {
+            let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
+            return Err(Error::usage("no experiment was named")
+                .hint(format!("write one of {}", names.join(", "))));
+        };
+        let experiment = Experiment::named(name)?;
+        let volumes = options.volumes.unwrap_or_default();
+        if !volumes.is_empty() && !experiment.takes_volumes {
+            return Err(Error::usage(format!(
+                "the experiment '{name}' takes no volumes: it makes its own"
+            )));
+        }
+        if options.rays.is_some() && !experiment.counts_rays {
+            return Err(Error::usage(format!(
+                "'--rays' has no effect in the experiment '{name}'"
+            )));
+        }
+        if options.rays == Some(0) {
+            return Err(Error::usage("'--rays 0' measures nothing").hint("give a number from 1 on"));
+        }
+        let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
+        let effort = match (is_on(options.quick), is_on(options.full)) {
+            (true, true) => {
+                return Err(Error::usage("'quick' and 'full' do not go together"));
+            }
+            (true, false) => Effort::Quick,
+            (false, true) => Effort::Full,
+            (false, false) => Effort::default(),
+        };
+        let Engine::Device { device, work_group } = Engine::open(&device)? else {
+            return Err(Error::usage(
+                "the reference cannot be measured: it is what others are held against",
+            )
+            .hint("choose an OpenCL device: 'angioray devices' lists them"));
+        };
+
+        let bars = Bars::new();
+        let specimens = volumes.iter().map(|FilePath(path)| specimen(path, &bars));
+        let bench = Bench {
+            device: &device,
+            options: Options {
+                work_group: work_group.map(Into::into),
+            },
+            effort,
+            specimens: specimens.collect::<Result<_>>()?,
+            rays: options.rays,
+            progress: &bars,
+        };
+        let results = options
+            .output
+            .map(|FilePath(path)| Results::in_folder(&path));
+        let results = results.transpose()?;
+        message(format_args!("bench {name} on {}", device.info().name));
+        let outcome = (experiment.run)(&bench)?;
+        to_stdout(|out| {
+            writeln!(out, "{}", outcome.table.markdown())?;
+            outcome
+                .findings
+                .iter()
+                .try_for_each(|sentence| writeln!(out, "- {sentence}"))
+        })?;
+        if let Some(results) = results {
+            results.write(&bench, experiment, &outcome)?;
+            for path in results.paths() {
+                message(format_args!("wrote {}", path.display()));
+            }
+        }
+        match outcome.failure {
+            Some(sentence) => Err(Error::failed(sentence)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A volume file, looked at where the histogram suggests.
+fn specimen(path: &Path, progress: &dyn Progress) -> Result<Specimen> {
+    let source = Source::of(&VolumeOptions {
+        volume: Some(FilePath(path.to_owned())),
+        ..VolumeOptions::default()
+    })?;
+    let loaded = source.load(progress)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let specimen = Specimen {
+        // Without what tells the format.
+        name: name.split('.').next().unwrap_or_default().to_owned(),
+        volume: loaded.volume,
+        iso: loaded.subject.suggested_iso,
+    };
+    note(format_args!(
+        "{}: iso = {}, suggested by the histogram",
+        specimen.name,
+        concise(specimen.iso)
+    ));
+    specimen.check()?;
+    Ok(specimen)
+}

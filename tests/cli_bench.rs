@@ -1,0 +1,140 @@
+//! `angioray bench` from outside: its list of experiments, its tables and files. Without a device
+//! what needs one says so and passes, unless REQUIRE_OPENCL=1.
+
+mod cli_place;
+mod common;
+
+use cli_place::{Place, stderr};
+
+const EXPERIMENTS: [&str; 5] = ["vessels", "traversals", "convergence", "rays", "gradients"];
+
+#[test]
+fn the_help_lists_every_experiment_and_has_an_example() {
+    let help = Place::empty().done("bench --help");
+    let (_, examples) = help.split_once("Example:").unwrap();
+    assert!(examples.contains("angioray bench vessels"), "{help}");
+    for name in EXPERIMENTS {
+        assert!(help.contains(&format!("  {name}: ")), "{name}: {help}");
+    }
+}
+
+#[test]
+fn wrong_usage_says_what_there_is() {
+    let place = Place::with_ball();
+    for line in ["bench", "bench vesels"] {
+        let said = place.refused(line, 2);
+        let (_, hint) = said.split_once("hint: ").unwrap();
+        assert!(EXPERIMENTS.iter().all(|name| hint.contains(name)), "{said}");
+    }
+    for (line, wanted) in [
+        ("bench rays ball.nrrd", "takes no volumes"),
+        ("bench vessels --rays 5", "no effect"),
+        ("bench rays --rays 0", "measures nothing"),
+        ("bench vessels --quick --full", "cannot be used with"),
+        ("bench vessels --device reference", "cannot be measured"),
+    ] {
+        let said = place.refused(line, 2);
+        assert!(said.contains(wanted), "{line}: {said}");
+    }
+}
+
+/// Where the device under test can be had, its flag.
+fn device() -> Option<String> {
+    let device = common::device()?;
+    Some(format!("--device {}", device.info().id))
+}
+
+#[test]
+fn what_cannot_be_read_or_written_fails_before_the_work() {
+    let Some(device) = device() else { return };
+    let place = Place::empty();
+    let said = place.refused(&format!("bench vessels none.nrrd {device}"), 1);
+    assert!(said.contains("none.nrrd"), "{said}");
+    place.write("taken", "");
+    let line = format!("bench convergence -o taken {device}");
+    let output = place.run(&line);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(output.stdout.is_empty(), "{line}");
+    assert!(stderr(&output).contains("taken: cannot make the folder"));
+}
+
+/// The rows of a Markdown table, each as its cells.
+fn rows(markdown: &str) -> Vec<Vec<&str>> {
+    let lines = markdown.lines().filter(|line| line.starts_with('|'));
+    lines
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect()
+}
+
+#[test]
+fn vessels_end_in_a_table_and_leave_it_as_files() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    let line = format!("bench vessels ball.nrrd --quick -o out/first {device}");
+    let printed = place.done(&line);
+    let rows = rows(&printed);
+    let volumes = ["vessel of radius 0.5", "vessel of radius 2.5", "ball"];
+    for volume in volumes {
+        let of_volume = rows.iter().filter(|row| row[0] == volume);
+        let missed = |method: &str| {
+            let mut row = of_volume.clone().filter(|row| row[1] == method);
+            row.next().unwrap()[2].parse::<f64>().unwrap()
+        };
+        assert_eq!(missed("exact"), 0.0);
+        assert_eq!(of_volume.clone().count(), 22);
+        // The control: there is something to miss.
+        assert!(missed("step 2, none") > 1.0, "{volume}");
+    }
+    let findings = printed.lines().filter(|line| line.starts_with("- exact"));
+    assert_eq!(findings.count(), 3, "{printed}");
+
+    let json = place.json("out/first/results.json");
+    assert_eq!(json["experiment"], "vessels");
+    let in_json = json["rows"].as_array().unwrap();
+    assert_eq!(in_json.len(), 5 * 22);
+    let csv = std::fs::read_to_string(place.path("out/first/results.csv")).unwrap();
+    let (keys, lines) = csv.split_once("\r\n").unwrap();
+    assert!(keys.starts_with("volume,method,missed_share,"), "{keys}");
+    assert_eq!(lines.lines().count(), in_json.len());
+    assert!(csv.contains("\"step 0.5, regula-falsi:5, probe\""));
+    let share = in_json[0]["missed_share"].as_f64().unwrap();
+    assert!(csv.contains(&format!(",{share},")), "{share}");
+    let of = place.path("out/first");
+    let files = std::fs::read_dir(of).unwrap().count();
+    assert_eq!(files, 2, "something temporary is left");
+}
+
+#[test]
+fn traversals_of_a_volume_give_the_same_bytes() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    let printed = place.done(&format!("bench traversals ball.nrrd --quick {device}"));
+    let rows = rows(&printed);
+    let same = rows.iter().filter(|row| row.last() == Some(&"yes"));
+    assert_eq!(same.count(), 5 * 5, "{printed}");
+    assert!(printed.contains("is the fastest of all"), "{printed}");
+}
+
+#[test]
+fn the_other_experiments_end_in_tables() {
+    let Some(device) = device() else { return };
+    let place = Place::empty();
+    let of = |line: &str| place.done(&format!("bench {line} --quick {device}"));
+    let convergence = of("convergence");
+    let rows_of = rows(&convergence);
+    let row = |name: &str| rows_of.iter().find(|row| row[1] == name).unwrap();
+    let order = |name: &str| row(name)[3].parse::<f64>().unwrap();
+    assert!((order("riemann") - 1.0).abs() < 0.15, "{convergence}");
+    assert!((order("simpson") - 4.0).abs() < 0.15, "{convergence}");
+    let gradients = of("gradients");
+    let rows_of = rows(&gradients);
+    let angle = |name: &str| {
+        let row = rows_of.iter().find(|row| row[1] == name).unwrap();
+        row[3].parse::<f64>().unwrap()
+    };
+    // Half a voxel aside is worse than centred, and the truth is no gradient's own.
+    assert!(angle("central") > 0.0 && angle("central") < 0.5 * angle("forward"));
+    let rays = of("rays --rays 3000");
+    let all = rows(&rays).pop().unwrap();
+    assert_eq!((all[0], all[1], all[3]), ("all", "3000", "0"), "{rays}");
+}

@@ -1,6 +1,6 @@
 //! Emission and absorption: cases 16 to 21.
 
-use angioray::scene::{Homogeneity, HomogeneityRule, Picture};
+use angioray::scene::{Homogeneity, HomogeneityRule, Picture, Quadrature};
 use angioray::volume::{NonFinite, Rescale, Volume, Voxels};
 
 use crate::mutant::{Mutant, kernel};
@@ -177,19 +177,18 @@ fn tf_spike() {
 
 #[test]
 fn tf_stairs() {
-    // Every panel counts as it comes.
-    let never_halved = kernel(
-        "pass/adaptive_emission.cl",
-        &[(
-            "bool agree = gathered->transmission * off <= allowed && both.depth <= DEEP;",
-            "bool agree = off >= 0.0f;",
-        )],
-    );
+    // A fixed step, which sees stairs where its samples happen to lie.
+    let stepped = Mutant::Scene(|scene| {
+        let Picture::Emission(emission) = &mut scene.picture else {
+            panic!("not an emission");
+        };
+        emission.quadrature = Quadrature::default();
+    });
     judge(
         "emission::tf_stairs",
         "tf-stairs",
         |_| Vec::new(),
-        &[never_halved],
+        &[stepped],
     );
 }
 
@@ -215,12 +214,7 @@ fn tf_outside() {
             }
         }
     }
-    // Nothing above the last point.
-    let ends = kernel(
-        "lib/transfer.clh",
-        &[("return knot_colors[knots - 1u];", "return (float4)(0.0f);")],
-    );
-    judge("emission::tf_outside", "tf-outside", truth, &[ends]);
+    judge("emission::tf_outside", "tf-outside", truth, &[OTHER_LENGTH]);
 }
 
 #[test]

@@ -17,51 +17,36 @@ pub const REACH_MOST: u32 = (1 << (8 - CLASS_BITS)) - 1;
 /// them. So the distance to the nearest leaf that cannot be leapt over bounds both.
 pub fn add_reach(octree: &Octree, classes: &mut [u8]) {
     let leaves = octree.levels()[0];
-    let most = REACH_MOST as u8 + 1;
     let leap = |class: u8| class == Class::Below as u8 || class == Class::Above as u8;
     let own = &mut classes[..leaves.nodes()];
-    let mut distance: Vec<u8> = own
-        .iter()
-        .map(|&class| if leap(class) { most } else { 0 })
-        .collect();
-    // Two sweeps are exact for the chessboard distance (Rosenfeld and Pfaltz 1968).
-    sweep(leaves, &mut distance, false);
-    sweep(leaves, &mut distance, true);
-    for (byte, distance) in own.iter_mut().zip(distance) {
-        *byte |= distance.saturating_sub(1) << CLASS_BITS;
+    // Of the leaves that can be leapt over, peeled layer by layer, every layer that is left is one
+    // more of reach.
+    let mut left: Vec<u8> = own.iter().map(|&class| u8::from(leap(class))).collect();
+    for _ in 0..REACH_MOST {
+        peel(leaves, &mut left);
+        if left.iter().all(|&leaf| leaf == 0) {
+            break;
+        }
+        for (byte, &leaf) in own.iter_mut().zip(&left) {
+            *byte += leaf << CLASS_BITS;
+        }
     }
 }
 
-/// One more than the least of the neighbours that the sweep has been to, where that is less.
-fn sweep(leaves: Level, distance: &mut [u8], backward: bool) {
-    let [nx, ny, nz] = leaves.size.map(|n| n as isize);
-    let order = |n: isize| (0..n).map(move |i| if backward { n - 1 - i } else { i });
-    let toward = if backward { 1 } else { -1 };
-    for z in order(nz) {
-        for y in order(ny) {
-            for x in order(nx) {
-                let at = ((z * ny + y) * nx + x) as usize;
-                if distance[at] == 0 {
-                    continue;
+/// Keeps a leaf (1) only where all its neighbours are there; what is outside the volume is.
+fn peel(leaves: Level, left: &mut Vec<u8>) {
+    let [nx, ny, _] = leaves.size.map(|n| n as usize);
+    // Along x, within rows; along y, rows of a slice; along z, slices.
+    for (run, stride) in [(nx, 1), (nx * ny, nx), (left.len(), nx * ny)] {
+        let before = left.clone();
+        for (left, before) in left.chunks_exact_mut(run).zip(before.chunks_exact(run)) {
+            let neighbours = |left: &mut [u8], other: &[u8]| {
+                for (leaf, &neighbour) in left.iter_mut().zip(other) {
+                    *leaf &= neighbour;
                 }
-                let mut least = distance[at];
-                for (dz, dy) in [(toward, -1), (toward, 0), (toward, 1), (0, toward), (0, 0)] {
-                    let (z, y) = (z + dz, y + dy);
-                    if !(0..nz).contains(&z) || !(0..ny).contains(&y) {
-                        continue;
-                    }
-                    let row = (z * ny + y) * nx;
-                    // In its own row only the leaf before it has been visited.
-                    let last_dx = if (dz, dy) == (0, 0) { -1 } else { 1 };
-                    for dx in -1..=last_dx {
-                        let x = x - toward * dx;
-                        if (0..nx).contains(&x) {
-                            least = least.min(distance[(row + x) as usize].saturating_add(1));
-                        }
-                    }
-                }
-                distance[at] = least;
-            }
+            };
+            neighbours(&mut left[stride..], before);
+            neighbours(left, &before[stride..]);
         }
     }
 }

@@ -149,7 +149,7 @@ impl Default for Sampling {
             method: SamplingMethod::default(),
             step_voxels: 0.5,
             filter: Filter::Linear,
-            traverse: Traverse::Hierarchical,
+            traverse: Traverse::Distance,
             skip: true,
             probe: true,
         }

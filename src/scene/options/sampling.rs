@@ -28,7 +28,7 @@ group! {
         filter: Filter,
 
         /// How empty space is skipped: uniform, kd-restart, hierarchical, revelles or distance; never
-        /// changes the picture [default: hierarchical]
+        /// changes the picture [default: distance]
         #[arg(long, value_name = "NAME")]
         traverse: Traverse,
 

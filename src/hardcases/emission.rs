@@ -62,11 +62,14 @@ pub fn scenes(name: &str, volume: &Volume) -> Vec<HardScene> {
         "gaussian" => under(SMOOTH, &whole, "whole", 1.0, &[(0.1, 0.0), (1.0, 0.3)]),
         "tf-spike" => {
             let spike = &[(128.0, 0.0), (128.05, 0.9), (128.1, 0.0)];
-            let scene = |quad: &str| {
+            let scene = |name: &str, quad: &str| {
                 let view = along_x.clone().with(&format!("quad = \"{quad}\""));
-                view.dvr(quad, 1.0, spike)
+                view.dvr(name, 1.0, spike)
             };
-            vec![scene("preintegrated"), scene("adaptive")]
+            vec![
+                scene("preintegrated", "preintegrated"),
+                scene("adaptive", "adaptive:1e-4"),
+            ]
         }
         "tf-stairs" => {
             let adaptive = &[QuadratureMethod::Adaptive];

@@ -34,11 +34,11 @@ pub fn add_reach(octree: &Octree, classes: &mut [u8]) {
 }
 
 /// Keeps a leaf (1) only where all its neighbours are there; what is outside the volume is.
-fn peel(leaves: Level, left: &mut Vec<u8>) {
+fn peel(leaves: Level, left: &mut [u8]) {
     let [nx, ny, _] = leaves.size.map(|n| n as usize);
     // Along x, within rows; along y, rows of a slice; along z, slices.
     for (run, stride) in [(nx, 1), (nx * ny, nx), (left.len(), nx * ny)] {
-        let before = left.clone();
+        let before = left.to_vec();
         for (left, before) in left.chunks_exact_mut(run).zip(before.chunks_exact(run)) {
             let neighbours = |left: &mut [u8], other: &[u8]| {
                 for (leaf, &neighbour) in left.iter_mut().zip(other) {

@@ -1,5 +1,5 @@
 //! The device against the double-precision reference: every phantom, and real angiograms where
-//! `ANGIORAY_DATA` names their folder. Prints the README's table, a row a volume (in brackets:
+//! `ANGIORAY_DATA` names their folder. Prints the table of docs/accuracy.md, a row a volume (in brackets:
 //! fixed steps alone):
 //!
 //! `cargo nextest run --test accuracy --no-capture | grep '|'`

@@ -121,3 +121,27 @@ fn what_is_resolved_reads_back_as_the_same_scene() {
         assert_eq!(again.options, first.options, "{text}");
     }
 }
+
+/// A picture carries its scene with every default filled in: in another mode its sampling is not
+/// that picture's.
+#[test]
+fn a_stored_scene_in_another_mode_is_sampled_as_that_mode_is() {
+    let stored = |text: &str| resolved(&options(text)).options.to_toml().unwrap();
+    let over = |flag: &str, file: &str| resolved(&options(flag).over(options(file)));
+    let of_dvr = stored("mode = 'dvr'");
+    let iso = over("mode = 'iso'", &of_dvr).scene;
+    assert_eq!(iso.sampling.method, SamplingMethod::Exact);
+    let dvr = options("mode = 'dvr'").over(options(&stored("mode = 'iso'")));
+    assert_eq!(quadrature(&dvr), QuadratureMethod::Simpson);
+    // Between two surfaces it stays.
+    let of_fixed = stored("mode = 'mip'\nstep = 0.25");
+    let iso = over("mode = 'iso'", &of_fixed).scene;
+    assert_eq!(iso.sampling.method, SamplingMethod::Fixed);
+    // Homogeneous leaves take steps; exact sampling has none.
+    let of_adaptive = stored("mode = 'dvr'\nquad = 'adaptive'");
+    let leaves = options("homogeneity = 0.1").over(options(&of_adaptive));
+    assert_eq!(quadrature(&leaves), QuadratureMethod::Simpson);
+    let of_leaves = stored("mode = 'dvr'\nhomogeneity = 0.1");
+    let exact = options("sampling = 'exact'").over(options(&of_leaves));
+    assert_eq!(quadrature(&exact), QuadratureMethod::Adaptive);
+}

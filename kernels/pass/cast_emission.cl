@@ -101,7 +101,8 @@ static inline Panel panel_at(Sight sight, float t_near, float t_far, Node *near,
 {
     float length_mm = t_far - t_near;
     Medium nodes[LAST + 1u];
-    nodes[0] = *near;
+    if (known)
+        nodes[0] = *near;
     for (uint n = known ? 1u : 0u; n <= LAST; n++) {
         nodes[n] = medium_at(sight, n == LAST ? t_far : t_near + (float)n * (length_mm / (float)LAST));
         *samples += 1u;

@@ -142,7 +142,7 @@ kernel void exact_projection(const global VOXEL *voxels, const global uchar *nod
                     float t = walk.t.x + (exit.t.x - walk.t.x) * ends[n];
 #if PROJECTION == PROJECTION_LOCAL
                     // With the nearest filter the field changes at walls alone.
-                    float slope = n > 0u ? cubic_slope(cubic, 0.5f * (ends[n - 1u] + ends[n])) : (FILTER_LINEAR ? 0.0f : v - turn);
+                    float slope = n > 0u ? cast.sign * cubic_slope(cubic, 0.5f * (ends[n - 1u] + ends[n])) : (FILTER_LINEAR ? 0.0f : v - turn);
                     if (turn == -INFINITY || slope > flat) {
                         rising = true;
                         if (v > turn) {

@@ -54,7 +54,7 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(SurfaceCast, iterations);
         layout[n++] = OFFSET(SurfaceCast, traverse);
         layout[n++] = OFFSET(SurfaceCast, probe);
-        layout[n++] = OFFSET(SurfaceCast, pad);
+        layout[n++] = OFFSET(SurfaceCast, iso_error);
     }
     {
         ProjectionCast value;

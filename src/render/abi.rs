@@ -78,7 +78,8 @@ twin! {
         iterations: u32,
         traverse: u32,
         probe: u32,
-        pad: u32,
+        /// How far `iso` is from the iso value that was asked for.
+        iso_error: f32,
     }
 }
 

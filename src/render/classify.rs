@@ -12,7 +12,7 @@ use super::ranges::ValueRanges;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Class {
-    /// Nothing to see: wholly below the iso value, or wholly transparent.
+    /// Nothing to see: wholly below the iso value, nowhere above the floor, or wholly transparent.
     Below = 0,
     /// Wholly at or above the iso value.
     Above = 1,
@@ -22,12 +22,14 @@ pub enum Class {
     Homogeneous = 3,
 }
 
-/// Classes of all nodes against an iso value in stored units; inside is Φ ≥ iso.
-pub fn by_iso(octree: &Octree, iso: f32) -> Vec<u8> {
+/// Classes of all nodes against an iso value in stored units; inside is Φ ≥ iso. Where the value
+/// that was asked for lies `iso_error` beside it, a node that reaches down to it is visited: on which
+/// side of the other it lies is uncertain.
+pub fn by_iso(octree: &Octree, iso: f32, iso_error: f32) -> Vec<u8> {
     classes(octree, |_, [min, max]| {
         if max < iso {
             Class::Below
-        } else if min >= iso {
+        } else if min > iso || (min == iso && iso_error == 0.0) {
             Class::Above
         } else {
             Class::Visit

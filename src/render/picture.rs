@@ -87,8 +87,10 @@ pub fn surface(
     phong: Option<Phong>,
 ) -> Result<Planes> {
     let wanted = view.wanted;
+    let asked = view.volume.rescale().stored(iso);
     let iso = stored(view.volume.rescale(), iso);
-    let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso))?;
+    let iso_error = (asked - f64::from(iso)).abs() as f32;
+    let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso, iso_error))?;
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -97,7 +99,7 @@ pub fn surface(
         iterations: refine.iterations,
         traverse: view.traverse(),
         probe: u32::from(view.scene.sampling.probe),
-        pad: 0,
+        iso_error,
     };
     let mut hit_mm = run.plane("hit plane")?;
     let mut kind = run.plane("kind plane")?;

@@ -67,7 +67,7 @@ impl<'a> RayCaster<'a> {
             iterations: 0,
             traverse: traverse_number(&sampling),
             probe: 0,
-            pad: 0,
+            iso_error: 0.0,
         };
         let device = self.device;
         let four = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
@@ -92,7 +92,8 @@ impl<'a> RayCaster<'a> {
             .collect();
         let grid = volume_grid(volume, levels.len() as u32);
         let levels = Buffer::upload(device, "octree's levels", &levels)?;
-        let classes = Buffer::upload(device, "octree's classes", &classify::by_iso(octree, iso))?;
+        let classes = classify::by_iso(octree, iso, 0.0);
+        let classes = Buffer::upload(device, "octree's classes", &classes)?;
         let mut hit = Buffer::<f32>::new(device, "hits", rays.len())?;
         let mut kind = Buffer::<u32>::new(device, "kinds", rays.len())?;
         let mut certificate = Buffer::<u32>::new(device, "certificates", rays.len())?;

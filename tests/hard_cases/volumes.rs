@@ -240,16 +240,16 @@ fn orientations() {
     }
 }
 
-/// The linear index of a voxel.
-const INDEX: &str = "voxels[((INDEX)z * volume.ny + y) * volume.nx + x]";
+/// The linear index of a cell's first voxel.
+const INDEX: &str = "(((INDEX)low.z * volume.ny + low.y) * volume.nx + low.x)";
 
 #[test]
 fn wide_index() {
     let sixteen_bits = kernel(
-        "lib/field.clh",
+        "lib/cells.clh",
         &[(
             INDEX,
-            "voxels[(ushort)(((INDEX)z * volume.ny + y) * volume.nx + x)]",
+            "(ushort)(((INDEX)low.z * volume.ny + low.y) * volume.nx + low.x)",
         )],
     );
     judge(
@@ -262,9 +262,12 @@ fn wide_index() {
         return;
     }
     // The control the other way: an index of 64 bits is not caught.
-    let sixty_four = [(INDEX, "voxels[((ulong)z * volume.ny + y) * volume.nx + x]")];
+    let sixty_four = [(
+        INDEX,
+        "(((ulong)low.z * volume.ny + low.y) * volume.nx + low.x)",
+    )];
     let caught = std::panic::catch_unwind(|| {
-        assert_caught("volumes::wide_index", "lib/field.clh", &sixty_four);
+        assert_caught("volumes::wide_index", "lib/cells.clh", &sixty_four);
     });
     assert!(caught.is_err(), "64 bits change the picture");
 }

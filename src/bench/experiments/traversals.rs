@@ -99,7 +99,7 @@ fn by(scene: &Scene, traverse: Traverse) -> Scene {
     scene
 }
 
-/// Every kind of cast: exact and at the default steps, and emission, which has no exact one.
+/// Every kind of cast: exact and at the default steps, and emission under its default rule.
 fn pictures(specimen: &Specimen, side_px: u32) -> Result<[(&'static str, Scene); 5]> {
     let sampled = |mut scene: Scene, method| {
         scene.sampling.method = method;

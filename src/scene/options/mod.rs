@@ -83,16 +83,24 @@ impl SceneOptions {
     /// when the flag is a view, or the iso value when it is another mode, goes with it.
     #[must_use]
     pub fn over(self, mut file: Self) -> Self {
+        // An integral is not sampled as a surface is: neither's sampling is the other's.
+        let dvr = |options: &Self| options.picture.mode() == Mode::Dvr;
+        if self.picture.mode.is_some() && dvr(&self) != dvr(&file) {
+            file.sampling.sampling = None;
+            file = file.without_steps();
+        }
+        let implies_steps =
+            self.steps_given() || self.picture.quad.is_some() || self.picture.homogeneity.is_some();
         match self.sampling.sampling {
-            None if self.steps_given() || self.picture.quad.is_some() => {
-                file.sampling.sampling = None;
-            }
+            None if implies_steps => file.sampling.sampling = None,
             None => {}
             Some(method) => {
                 let of_method = |quad: &Quadrature| quad.sampling() == method;
                 file.picture.quad = file.picture.quad.filter(of_method);
                 if method == SamplingMethod::Exact {
                     file = file.without_steps();
+                    file.picture.homogeneity = None;
+                    file.picture.homogeneity_rule = None;
                 }
             }
         }

@@ -64,7 +64,8 @@ group! {
 
         /// dvr: how light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or
         /// preintegrated at the fixed step, or adaptive, which takes no steps and keeps every
-        /// channel within the error :BOUND of linear light [default: simpson; adaptive:0.001]
+        /// channel within the error :BOUND of linear light, 0.001 unless told [default: simpson;
+        /// adaptive where --sampling exact is given]
         #[arg(long, value_name = "METHOD[:BOUND]")]
         quad: Quadrature,
 

@@ -59,7 +59,7 @@ fn a_cast_that_loses_rays_is_caught() {
         // A certificate that ignores rounding.
         (
             "lib/crossing.clh",
-            "return spread * 4e-6f + fabs(iso) * 1.2e-7f;",
+            "return spread * 4e-6f + iso_error;",
             "return 1e-30f;",
         ),
     ] {

@@ -147,8 +147,8 @@ fn two_roots_in_a_step() {
 const ABOVE_ONLY: Mutant = kernel(
     "lib/crossing.clh",
     &[(
-        "if (most < 0.0f || least >= 0.0f)\n                value = least >= 0.0f ? 1.0f : -1.0f;",
-        "if (most <= 0.0f || least > 0.0f)\n                value = least > 0.0f ? 1.0f : -1.0f;",
+        "if (most < 0.0f || least >= 0.0f)\n                value = least >= 0.0f ? least : most;",
+        "if (most <= 0.0f || least > 0.0f)\n                value = least > 0.0f ? least : most - 1.0f;",
     )],
 );
 

@@ -11,11 +11,13 @@ pub mod extent;
 pub mod frame;
 pub mod gpu;
 pub mod hardcases;
+pub mod measure;
 pub mod octree;
 pub mod output;
 pub mod progress;
 pub mod reference;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod volume;
 

@@ -9,27 +9,24 @@ mod compare;
 pub mod convergence;
 mod effort;
 mod experiments;
-mod interleaved;
 mod results;
 mod specimen;
-mod table;
 mod verdict;
 
 pub use effort::Effort;
 pub use experiments::EXPERIMENTS;
 pub use results::Results;
 pub use specimen::Specimen;
-pub use table::{Cell, Column, Shown, Table};
 pub use verdict::{Judge, Met, Verdict};
-
-use interleaved::{Times, interleaved};
 
 use crate::error::{Error, Result};
 use crate::frame::Wanted;
 use crate::gpu::Device;
+use crate::measure::{Times, interleaved};
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{Options, Renderer};
+use crate::report::Table;
 use crate::scene::Scene;
 
 /// What an experiment is given to work with.

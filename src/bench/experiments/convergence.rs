@@ -1,8 +1,9 @@
 //! The rules that sum light along a ray: with what order they converge.
 
 use super::super::convergence::{ORDERS, Smooth, errors, halvings, observed_order};
-use super::super::{Bench, Experiment, Outcome, Shown, Table};
+use super::super::{Bench, Experiment, Outcome};
 use crate::error::Result;
+use crate::report::{Shown, Table};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "convergence",

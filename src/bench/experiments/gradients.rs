@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use super::super::interleaved::interleaved;
-use super::super::{Bench, Experiment, Outcome, Shown, Specimen, Table};
+use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::error::normal_error;
 use crate::frame::{Frame, Wanted};
+use crate::measure::interleaved;
 use crate::reference;
 use crate::render::Rendering;
+use crate::report::{Shown, Table};
 use crate::scene::options::concise;
 use crate::scene::{Gradient, Precomputed, Scene};
 use crate::volume::PhantomKind;

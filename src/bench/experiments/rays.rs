@@ -1,8 +1,9 @@
 //! The adversarial test at any length: rays aimed where a cast loses surfaces.
 
 use super::super::aimed::{self, Aim, Tally};
-use super::super::{Bench, Cell, Effort, Experiment, Outcome, Shown, Table};
+use super::super::{Bench, Effort, Experiment, Outcome};
 use crate::error::Result;
+use crate::report::{Cell, Shown, Table};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "rays",

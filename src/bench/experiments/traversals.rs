@@ -1,10 +1,11 @@
 //! The ways through the octree as rivals: the same pictures, at what cost.
 
 use super::super::compare::same_picture;
-use super::super::interleaved::Times;
-use super::super::{Bench, Experiment, Outcome, Shown, Specimen, Table};
+use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
+use crate::measure::Times;
+use crate::report::{Shown, Table};
 use crate::scene::{SamplingMethod, Scene, Traverse};
 use crate::volume::PhantomKind;
 

@@ -1,13 +1,14 @@
 //! What fixed steps lose of thin vessels and of real angiograms, and what exact casting costs.
 
 use super::super::borderline::Borderline;
-use super::super::interleaved::Times;
-use super::super::{Bench, Cell, Experiment, Outcome, Shown, Specimen, Table};
+use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
 use crate::frame::{Frame, Wanted};
+use crate::measure::Times;
 use crate::reference;
 use crate::render::Renderer;
+use crate::report::{Cell, Shown, Table};
 use crate::scene::options::concise;
 use crate::scene::{Picture, Refine, SamplingMethod, Scene};
 

@@ -17,6 +17,7 @@ mod numbers;
 mod picture;
 pub(crate) mod plain;
 mod sampling;
+mod setting;
 mod shown;
 mod subject;
 mod tone;
@@ -35,6 +36,7 @@ pub use numbers::{
 };
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;
+pub use setting::Setting;
 pub use subject::Subject;
 pub use tone::ToneOptions;
 pub use values::{CArm, LightChoice, SpacingMm, SrgbColor, Threshold, Triple, WindowEnds};

@@ -161,7 +161,7 @@ impl Engine {
                 };
                 Ok(Caster::Device {
                     device,
-                    renderer: Renderer::new(device, volume, octree, options)?,
+                    renderer: Box::new(Renderer::new(device, volume, octree, options)?),
                     octree_ms: *octree_ms,
                 })
             }
@@ -183,7 +183,7 @@ pub enum Caster<'a> {
     },
     Device {
         device: &'a Device,
-        renderer: Renderer<'a>,
+        renderer: Box<Renderer<'a>>,
         octree_ms: f64,
     },
 }

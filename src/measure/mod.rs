@@ -2,5 +2,11 @@
 //! its rivals.
 
 mod interleaved;
+mod pareto;
+mod settings;
+mod truth;
 
 pub use interleaved::{Times, interleaved};
+pub use pareto::{TIME_NOISE, Tradeoff, front};
+pub use settings::{built_in, grid};
+pub use truth::{TrueFrame, Truth};

@@ -72,7 +72,9 @@ impl RenderArguments {
         files.encoding.check_size(resolved.scene.size)?;
 
         let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
-        let rendered = engine.render(&loaded.volume, &source, &resolved.scene, wanted, &bars)?;
+        let prepared = engine.prepare(&loaded.volume, &source, &bars)?;
+        let mut caster = engine.caster(&loaded.volume, &prepared)?;
+        let rendered = caster.render(&resolved.scene, wanted, &bars)?;
 
         if let Some(figures) = &rendered.gradients {
             note(gradient_note(figures));

@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
+use crate::measure::Counts;
 use crate::render::GradientFigures;
 
 use super::engine::Engine;
 use super::job::JobArguments;
 use super::load::ms_since;
 use super::progress::Bars;
-use super::stats::{Counts, Memory, Stats, Times, VolumeStats};
+use super::stats::{Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -32,7 +32,8 @@ class Scatter {
     this.tip = element('div', { class: 'tip', role: 'status' });
     this.tip.hidden = true;
     figure.append(...this.legend(), this.tip);
-    if (this.points.length) new ResizeObserver(() => this.draw()).observe(figure);
+    if (!this.points.length) return;
+    this.draw();
     this.listen();
   }
 
@@ -162,6 +163,7 @@ class Scatter {
   }
 
   listen() {
+    addEventListener('resize', () => this.draw());
     document.addEventListener('pointerdown', (event) => {
       if (!event.target.closest('.point, .tip')) this.hideTip();
     });

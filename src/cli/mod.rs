@@ -7,6 +7,7 @@ mod hardcase;
 mod info;
 mod job;
 mod load;
+mod orbit;
 mod outputs;
 mod percentiles;
 mod phantom;
@@ -42,6 +43,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Orbit(Box<orbit::OrbitArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
@@ -52,6 +54,7 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Orbit(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),

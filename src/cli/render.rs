@@ -11,10 +11,10 @@ use super::engine::Engine;
 use super::job::JobArguments;
 use super::load::ms_since;
 use super::progress::Bars;
-use super::stats::{Memory, Stats, Times, VolumeStats};
+use super::stats::{self, Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Render a volume to a picture
 #[derive(clap::Args)]
@@ -95,12 +95,12 @@ impl RenderArguments {
                 rendered.uploaded_bytes,
             ),
         };
-        stats.write(path)
+        stats::write(&stats, path)
     }
 }
 
 /// What precomputed gradients cost and are worth.
-fn gradient_note(figures: &GradientFigures) -> String {
+pub fn gradient_note(figures: &GradientFigures) -> String {
     let megabytes = figures.bytes as f64 / 1e6;
     let angle = match figures.angle {
         Some(angle) => format!(

@@ -144,7 +144,9 @@ mod pattern {
     }
 }
 
-fn patterned(level: fn(i64, i64, i64) -> i64) -> Frame {
+type Level = fn(i64, i64, i64) -> i64;
+
+fn patterned(level: Level) -> Frame {
     picture(97, 83, move |x, y, c| level(x, y, c) as f64 / 1020.0)
 }
 
@@ -155,7 +157,7 @@ fn patterned(level: fn(i64, i64, i64) -> i64) -> Frame {
 /// float32: `np.mean(evaluate(a, b, "LDR", applyMagma=False)[0], dtype=float64)`.
 #[test]
 fn scikit_image_and_nvidias_flip_agree() {
-    let cases: [(fn(_, _, _) -> _, fn(_, _, _) -> _, [f64; 3]); 4] = [
+    let cases: [(Level, Level, [f64; 3]); 4] = [
         (
             pattern::blobs,
             pattern::noisy,

@@ -25,8 +25,8 @@ pub struct ColorError {
 /// # Errors
 /// Different sizes, a missing display plane, a channel that is not finite.
 pub fn color_error(reference: &Frame, frame: &Frame) -> Result<ColorError> {
-    let (size, left, right) = displays(reference, frame)?;
-    let mut differences = Vec::with_capacity(3 * size.pixels());
+    let (left, right) = displays(reference, frame)?;
+    let mut differences = Vec::with_capacity(3 * left.len());
     for (a, b) in left.iter().zip(right) {
         for channel in 0..3 {
             differences.push((f64::from(a[channel]) - f64::from(b[channel])).abs());

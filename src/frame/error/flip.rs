@@ -19,7 +19,8 @@ const MOST_PIXELS: usize = 28_000_000;
 /// # Errors
 /// Different sizes, a missing display plane, a channel that is not finite.
 pub fn flip(reference: &Frame, frame: &Frame) -> Result<Option<f64>> {
-    let (size, left, right) = displays(reference, frame)?;
+    let (left, right) = displays(reference, frame)?;
+    let size = frame.size;
     if size.pixels() > MOST_PIXELS {
         return Ok(None);
     }

@@ -5,6 +5,9 @@ use crate::extent::ImageSize;
 
 use crate::frame::Frame;
 
+/// A plane of the reference and the same plane of the other picture.
+pub(super) type Pair<'a, T> = (&'a [T], &'a [T]);
+
 /// The size of both.
 pub(super) fn comparable(reference: &Frame, frame: &Frame) -> Result<ImageSize> {
     reference.check()?;
@@ -24,18 +27,15 @@ pub(super) fn both<'a, T>(
     frame: &'a Frame,
     name: &str,
     plane: impl Fn(&'a Frame) -> Option<&'a [T]>,
-) -> Result<(&'a [T], &'a [T])> {
+) -> Result<Pair<'a, T>> {
     let of = |who: &str, f| {
         plane(f).ok_or_else(|| Error::failed(format!("{who} has no {name} plane to compare")))
     };
     Ok((of("the reference", reference)?, of("the picture", frame)?))
 }
 
-/// The size and the display planes of both, whose R, G and B are all finite.
-pub(super) fn displays<'a>(
-    reference: &'a Frame,
-    frame: &'a Frame,
-) -> Result<(ImageSize, &'a [[f32; 4]], &'a [[f32; 4]])> {
+/// The display planes of both, whose R, G and B are all finite.
+pub(super) fn displays<'a>(reference: &'a Frame, frame: &'a Frame) -> Result<Pair<'a, [f32; 4]>> {
     let size = comparable(reference, frame)?;
     let (left, right) = both(reference, frame, "display", |f| f.display.as_deref())?;
     for (pixel, (a, b)) in left.iter().zip(right).enumerate() {
@@ -44,7 +44,7 @@ pub(super) fn displays<'a>(
             finite(pair, "display", size, pixel)?;
         }
     }
-    Ok((size, left, right))
+    Ok((left, right))
 }
 
 /// `v`, unless it is not finite: then the pixel is named.

@@ -30,7 +30,8 @@ const BAND: usize = 32;
 /// # Errors
 /// Different sizes, a missing display plane, a channel that is not finite.
 pub fn ssim(reference: &Frame, frame: &Frame) -> Result<Option<f64>> {
-    let (size, left, right) = displays(reference, frame)?;
+    let (left, right) = displays(reference, frame)?;
+    let size = frame.size;
     let (width, height) = (size.width() as usize, size.height() as usize);
     if width < WINDOW || height < WINDOW {
         return Ok(None);

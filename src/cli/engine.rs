@@ -131,26 +131,79 @@ impl Engine {
         }
     }
 
-    pub fn render(
+    /// What the device needs of the volume, besides the volume: nothing where the reference
+    /// renders.
+    pub fn prepare(
         &self,
         volume: &Volume,
         source: &Source,
+        progress: &dyn Progress,
+    ) -> Result<Prepared> {
+        match self {
+            Self::Reference => Ok(Prepared::Nothing),
+            Self::Device { .. } => {
+                let began = Instant::now();
+                let octree = Octree::build(volume, source.leaf, progress)?;
+                Ok(Prepared::Octree {
+                    octree,
+                    octree_ms: ms_since(began),
+                })
+            }
+        }
+    }
+
+    /// Ready for any scene of the volume, which is uploaded once.
+    pub fn caster<'a>(&'a self, volume: &'a Volume, prepared: &'a Prepared) -> Result<Caster<'a>> {
+        match (self, prepared) {
+            (Self::Device { device, work_group }, Prepared::Octree { octree, octree_ms }) => {
+                let options = Options {
+                    work_group: work_group.map(Into::into),
+                };
+                Ok(Caster::Device {
+                    device,
+                    renderer: Box::new(Renderer::new(device, volume, octree, options)?),
+                    octree_ms: *octree_ms,
+                })
+            }
+            _ => Ok(Caster::Reference { volume }),
+        }
+    }
+}
+
+/// What an [`Engine`] made of a volume.
+pub enum Prepared {
+    Nothing,
+    Octree { octree: Octree, octree_ms: f64 },
+}
+
+/// One volume, and what renders it.
+pub enum Caster<'a> {
+    Reference {
+        volume: &'a Volume,
+    },
+    Device {
+        device: &'a Device,
+        renderer: Box<Renderer<'a>>,
+        octree_ms: f64,
+    },
+}
+
+impl Caster<'_> {
+    pub fn render(
+        &mut self,
         scene: &Scene,
         wanted: Wanted,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
         match self {
-            Self::Reference => by_reference(volume, scene, wanted, progress),
-            Self::Device { device, work_group } => {
-                let began = Instant::now();
-                let octree = Octree::build(volume, source.leaf, progress)?;
-                let octree_ms = ms_since(began);
-                let options = Options {
-                    work_group: work_group.map(Into::into),
-                };
+            Self::Reference { volume } => by_reference(volume, scene, wanted, progress),
+            Self::Device {
+                device,
+                renderer,
+                octree_ms,
+            } => {
                 progress.begin("rendering", UNKNOWN_TOTAL);
-                let rendering =
-                    Renderer::new(device, volume, &octree, options)?.render(scene, wanted)?;
+                let rendering = renderer.render(scene, wanted)?;
                 progress.end();
                 let info = device.info();
                 Ok(Rendered {
@@ -161,7 +214,7 @@ impl Engine {
                         driver: info.driver.clone(),
                     },
                     times_ms: Times {
-                        octree: octree_ms,
+                        octree: *octree_ms,
                         classify: rendering.classify_ms,
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,

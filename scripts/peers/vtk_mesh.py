@@ -36,5 +36,8 @@ class Mesh:
             self.notes.append("surfaces are open at the volume's faces: no caps")
         renderer.AddActor(actor)
 
+    def rgba(self, window):
+        return window.rgba()
+
     def depth(self, renderer, window, told):
         return depth_mm(renderer, told["camera"], told["size"], window.z_buffer())

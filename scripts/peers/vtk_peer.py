@@ -19,7 +19,7 @@ class Vtk:
 
     def hello(self):
         settings = [{"name": name, "modes": list(method.modes)} for name, method in METHODS.items()]
-        device = f"{os.cpu_count()} threads; OpenGL: {vtk_window.opengl_renderer()}"
+        device = f"{os.cpu_count()} threads; OpenGL: {vtk_window.opengl()}"
         return {"peer": "vtk", "version": vtkVersion.GetVTKVersion(), "device": device, "settings": settings}
 
     def load(self, volume):

@@ -1,4 +1,5 @@
 """VTK's two volume mappers: fixed-point arithmetic on the processor, and OpenGL."""
+import ctypes
 import os
 
 import numpy as np
@@ -67,9 +68,13 @@ def set_look(mapper, prop, volume, told):
 
 
 class FixedPoint:
+    #: What the mapper's integers call 1.
+    ONE = 0x7FFF
+
     def __init__(self, renderer, volume, told, step_voxels):
         self.notes = []
         mapper = vtkFixedPointVolumeRayCastMapper()
+        self.image = mapper.GetRayCastImage()
         set_steps(mapper, volume, step_voxels)
         mapper.SetInteractiveSampleDistance(mapper.GetSampleDistance())
         mapper.SetNumberOfThreads(os.cpu_count())
@@ -84,6 +89,22 @@ class FixedPoint:
             self.notes += [note] if note else []
         add_light(renderer, told["toward_light"], at_eye=False)
         show(renderer, volume, mapper, prop)
+
+    def rgba(self, window):
+        """The mapper's own image, of the part of the window that the volume covers.
+
+        VTK's window shows it stretched: its outermost pixel centres lie on the quad's edges, half a
+        pixel off there, and what lies between is interpolated.
+        """
+        width, height = window.size
+        rgba = np.zeros((height, width, 4), np.float32)
+        (stride, rows), (used_width, used_height) = self.image.GetImageMemorySize(), self.image.GetImageInUseSize()
+        address = int(self.image.GetImage().split("_")[1], 16)
+        held = np.ctypeslib.as_array((ctypes.c_uint16 * (stride * rows * 4)).from_address(address))
+        left, bottom = self.image.GetImageOrigin()
+        used = held.reshape(rows, stride, 4)[:used_height, :used_width]
+        rgba[bottom : bottom + used_height, left : left + used_width] = used / self.ONE
+        return rgba[::-1]
 
     def depth(self, *_):
         return None
@@ -113,6 +134,9 @@ class Gpu:
         if told["mode"] == "iso" and told["caps"] and volume.touches_faces(told["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         show(renderer, volume, self.mapper, prop)
+
+    def rgba(self, window):
+        return window.rgba()
 
     def depth(self, renderer, window, told):
         """Of surfaces, from another rendering into an image with depths."""

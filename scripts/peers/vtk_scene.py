@@ -25,7 +25,7 @@ class Scene:
 
     def color(self):
         """Linear light, premultiplied."""
-        rgba = self.window.rgba()
+        rgba = self.drawn.rgba(self.window)
         if self.told["mode"] in ("mip", "minip"):
             return np.concatenate([linear_from_srgb(rgba[..., :3]), rgba[..., 3:]], axis=2)
         return rgba

@@ -13,15 +13,15 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkEGLRenderWindow
 DEPTH_BITS = 32
 
 
-def opengl_renderer():
+def opengl():
+    """The renderer and its version, by OpenGL's own account."""
     window = vtkEGLRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetSize(8, 8)
     window.Render()
-    for line in window.ReportCapabilities().splitlines():
-        if "OpenGL renderer" in line:
-            return line.split(":", 1)[1].strip()
-    return "unknown"
+    said = dict(line.split(":", 1) for line in window.ReportCapabilities().splitlines() if ":" in line)
+    parts = (said.get(f"OpenGL {what} string", "").strip() for what in ("renderer", "version"))
+    return ", ".join(part for part in parts if part) or "unknown"
 
 
 class Window:

@@ -14,6 +14,7 @@ mod render;
 mod scene;
 mod stats;
 mod terminal;
+mod tolerance;
 
 use std::process::ExitCode;
 

@@ -11,6 +11,8 @@ use crate::output::write_atomically;
 use crate::scene::{Picture, SceneOptions};
 use crate::volume::Volume;
 
+use super::tolerance::ToleranceStats;
+
 #[derive(Serialize)]
 pub struct Stats<'a> {
     pub version: &'static str,
@@ -25,6 +27,9 @@ pub struct Stats<'a> {
     pub passes: Vec<PassStats>,
     pub counts: Counts,
     pub memory: Memory,
+    /// Where an error bound decided how rays are followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_error: Option<ToleranceStats>,
 }
 
 #[derive(Serialize)]

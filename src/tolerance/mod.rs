@@ -54,6 +54,8 @@ const ABOUT_AS_FAST: f64 = 1.4;
 const TIMED_TOGETHER: usize = 5;
 /// Times are taken for equal within this factor.
 const EQUALLY_FAST: f64 = 1.05;
+/// What takes longer than this many times the fastest's time, each timed once, is not timed again.
+const MAYBE_FASTEST: f64 = 2.0;
 /// Repeats in turn: as many as fit into so much time, within limits.
 const REPEATS: [usize; 2] = [2, 7];
 const TIMING_MS: f64 = 400.0;
@@ -254,18 +256,25 @@ impl Search<'_, '_> {
         Ok(within)
     }
 
-    /// Times contenders in turn.
+    /// Times contenders: all once, then in turn those that may be the fastest.
     fn time(&mut self, group: &[usize], size: ImageSize) -> Result<()> {
         let wanted = self.task.wanted;
-        let mut once = 0.0;
         for &at in group {
-            once += self.render(at, size, wanted)?.render_ms;
+            self.render(at, size, wanted)?; // the first one warms up
+            self.contenders[at].ms = Some(self.render(at, size, wanted)?.render_ms);
         }
+        let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
+        let fastest = group.iter().map(|&at| ms(at)).fold(f64::INFINITY, f64::min);
+        let fast = group.iter().copied();
+        let fast: Vec<usize> = fast
+            .filter(|&at| ms(at) <= MAYBE_FASTEST * fastest)
+            .collect();
+        let once: f64 = fast.iter().map(|&at| ms(at)).sum();
         let repeats = (TIMING_MS / once).clamp(REPEATS[0] as f64, REPEATS[1] as f64);
-        let times = interleaved(group, repeats as usize - 1, |&at| {
+        let times = interleaved(&fast, repeats as usize, |&at| {
             Ok(self.render(at, size, wanted)?.render_ms)
         })?;
-        for (&at, times) in group.iter().zip(&times) {
+        for (&at, times) in fast.iter().zip(&times) {
             self.contenders[at].ms = Some(times.min_ms());
         }
         Ok(())

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
+use crate::measure::Counts;
 use crate::render::GradientFigures;
 use crate::scene::{ErrorBound, FilePath, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::tolerance::{self, Choice, Cost, Task};
@@ -15,7 +16,7 @@ use super::load::{Loaded, Source, ms_since};
 use super::outputs::{OutputOptions, absolute};
 use super::progress::Bars;
 use super::scene::SceneArgument;
-use super::stats::{Counts, Memory, Stats, Times, VolumeStats};
+use super::stats::{Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 use super::tolerance::{ToleranceStats, note_of};
 

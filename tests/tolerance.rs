@@ -123,7 +123,11 @@ fn the_chosen_setting_keeps_the_bound_and_coarse_ones_do_not() {
         };
         let of_chosen = error(&mut renderer, &choice.resolved.options);
         assert!(bound.is_met_by(of_chosen), "{bound}: {of_chosen}");
-        assert!(of_chosen <= choice.upper * (1.0 + 1e-6), "{bound}");
+        let upper = choice.upper;
+        assert!(
+            of_chosen <= upper * (1.0 + 1e-6),
+            "{bound}: {of_chosen} {upper}"
+        );
         // The control: the grid's coarsest setting is judged beyond the bound, and is.
         let coarsest = &choice.tried[0];
         assert!(!bound.is_met_by(coarsest.error), "{bound}");

@@ -31,8 +31,9 @@ pub fn note_of(choice: &Choice) -> String {
         (tiles, false) => format!("as {tiles} fresh tiles have it"),
     };
     format!(
-        "max-error {bound}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
+        "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
          {tiles}; {} settings tried in {:.1} s",
+        concise(bound.bound()),
         concise(rounded(choice.estimate)),
         concise(rounded(choice.upper)),
         100.0 * CONFIDENCE,

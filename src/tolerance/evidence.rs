@@ -6,12 +6,14 @@
 //! control-variate estimate: Cochran 1977, Sampling Techniques, §7.2; Owen 2013, Monte Carlo theory,
 //! §8.9). So few rays give narrow limits:
 //! - Of a root mean square and of a share of hits, the mean of the surest picture's correction has
-//!   Student's limit over the random tiles.
+//!   Student's limit over the random tiles. A few pixels may hold most of a mean square, and no tile
+//!   one of them: as many as can be there without any on the tiles are taken to be ten times as far
+//!   off as the worst on the tiles.
 //! - Of a percentile, so has the share of channels that the correction lifts beyond the bound.
 //! - Of a greatest error no sample proves anything by itself. The candidate's is known against the
 //!   surest picture at every pixel; that picture is trusted to be off by no more than twice what it
 //!   is anywhere on the tiles. (With n rays none of which is off further, at most a share of
-//!   1 − 0.01^(1/n) of all can be, at 99 % confidence; which of a thousand is one.) What the device
+//!   1 − 0.01^(1/n) of all can be, at 99 % confidence: one in a thousand of 4096.) What the device
 //!   itself cannot prove, hits and misses whose [`Certificate`](crate::frame::Certificate) is
 //!   undecided, is asked of the reference ray by ray.
 
@@ -20,7 +22,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::deviation::{Deviation, Figure, Seen};
-use super::student::Mean;
+use super::student::{CONFIDENCE, Mean};
 use super::tiles::Tiles;
 use crate::error::Result;
 use crate::frame::{Certificate, Frame};
@@ -30,6 +32,8 @@ use crate::volume::Volume;
 
 /// The surest picture is off by no more than this many times what it is on the tiles.
 const TRUST: f64 = 2.0;
+/// Unseen exceptions are off by so many times what the worst pixel on the tiles is.
+const EXCEPTION: f64 = 10.0;
 /// The most undecided pixels that are asked of the reference; more are no rare exceptions.
 const MOST_UNDECIDED: usize = 1 << 14;
 
@@ -174,10 +178,24 @@ impl<'a> Evidence<'a> {
         let mean = parts.sum::<f64>() / pixels;
         let (correction, margin) = self.correction(picture, sample);
         let estimate = (mean + correction).max(0.0);
+        let (exceptions, _) = self.for_the_unknown(Mean {
+            mean: unseen_share(sample) * EXCEPTION * EXCEPTION * self.surest_off(sample),
+            margin: 0.0,
+        });
         Judgement {
             figure: estimate.sqrt(),
-            upper: (estimate + margin).sqrt(),
+            upper: (estimate + margin + exceptions).sqrt(),
         }
+    }
+
+    /// The greatest part of a pixel of the surest picture itself, on the sample.
+    fn surest_off(&self, sample: &Sample) -> f64 {
+        let parts = sample.iter().flatten().filter_map(|&pixel| {
+            let truth = self.known.get(&pixel)?;
+            let surest = Seen::in_frame(&self.surest, pixel as usize);
+            Some(self.deviation.part(truth, &surest))
+        });
+        parts.fold(0.0, f64::max)
     }
 
     /// What the unknown pixels' truth adds to the mean of the parts of all, and how much more it may
@@ -280,17 +298,17 @@ impl<'a> Evidence<'a> {
                 upper: where_known,
             };
         };
-        let surest_off = sample.iter().flatten().filter_map(|&pixel| {
-            let truth = self.known.get(&pixel)?;
-            let surest = Seen::in_frame(&self.surest, pixel as usize);
-            Some(self.deviation.part(truth, &surest))
-        });
-        let surest_off = surest_off.fold(0.0, f64::max);
         Judgement {
             figure: where_known.max(elsewhere),
-            upper: where_known.max(elsewhere + TRUST * surest_off),
+            upper: where_known.max(elsewhere + TRUST * self.surest_off(sample)),
         }
     }
+}
+
+/// The share of all pixels that may be exceptions, at [`CONFIDENCE`], where the sample has none.
+fn unseen_share(sample: &Sample) -> f64 {
+    let pixels: usize = sample.iter().map(Vec::len).sum();
+    1.0 - (1.0 - CONFIDENCE).powf(1.0 / pixels.max(1) as f64)
 }
 
 /// The smallest entry that the share of entries does not exceed; beyond all for a share above 1.

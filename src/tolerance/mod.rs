@@ -57,7 +57,7 @@ const EQUALLY_FAST: f64 = 1.05;
 /// What takes longer than this many times the fastest's time, each timed once, is not timed again.
 const MAYBE_FASTEST: f64 = 2.0;
 /// Repeats in turn: as many as fit into so much time, within limits.
-const REPEATS: [usize; 2] = [2, 7];
+const REPEATS: [usize; 2] = [1, 7];
 const TIMING_MS: f64 = 400.0;
 
 /// What a setting is chosen for.
@@ -260,8 +260,12 @@ impl Search<'_, '_> {
     fn time(&mut self, group: &[usize], size: ImageSize) -> Result<()> {
         let wanted = self.task.wanted;
         for &at in group {
-            self.render(at, size, wanted)?; // the first one warms up
-            self.contenders[at].ms = Some(self.render(at, size, wanted)?.render_ms);
+            let cold = self.render(at, size, wanted)?.render_ms;
+            self.contenders[at].ms = Some(if cold < TIMING_MS / 8.0 {
+                self.render(at, size, wanted)?.render_ms
+            } else {
+                cold // what comes first is a small part of it
+            });
         }
         let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
         let fastest = group.iter().map(|&at| ms(at)).fold(f64::INFINITY, f64::min);
@@ -269,6 +273,9 @@ impl Search<'_, '_> {
         let fast: Vec<usize> = fast
             .filter(|&at| ms(at) <= MAYBE_FASTEST * fastest)
             .collect();
+        if fast.len() < 2 {
+            return Ok(());
+        }
         let once: f64 = fast.iter().map(|&at| ms(at)).sum();
         let repeats = (TIMING_MS / once).clamp(REPEATS[0] as f64, REPEATS[1] as f64);
         let times = interleaved(&fast, repeats as usize, |&at| {
@@ -331,7 +338,11 @@ impl Search<'_, '_> {
         }
         let found = match found {
             Some(found) => found,
-            None => self.verify(surest, &mut evidence, rays)?,
+            // Other tiles may have it otherwise: it was beyond the bound on some.
+            None => Found {
+                met: false,
+                ..self.verify(surest, &mut evidence, rays)?
+            },
         };
         self.cost.rays = evidence.rays();
         Ok(found)

@@ -93,8 +93,8 @@ fn from_lab(lightness: f64, a: f64, b: f64) -> Rgb {
 mod tests {
     use super::*;
 
-    /// The 33 colours that Moreland publishes, blue to red (table of the expanded paper and
-    /// `CoolWarmFloat33.csv`, kennethmoreland.com/color-maps).
+    /// The 33 colours that Moreland publishes, blue to red (`CoolWarmUChar33.csv`,
+    /// kennethmoreland.com/color-maps).
     const PUBLISHED: [Rgb; 33] = [
         [59, 76, 192],
         [68, 90, 204],

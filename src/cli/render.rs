@@ -11,10 +11,8 @@ use super::engine::Engine;
 use super::job::JobArguments;
 use super::load::ms_since;
 use super::progress::Bars;
-use super::stats::{Memory, Stats, Times, VolumeStats};
+use super::stats::{Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
-
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Render a volume to a picture
 #[derive(clap::Args)]

@@ -6,10 +6,14 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::gpu::DeviceInfo;
 use crate::measure::Counts;
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
 use crate::volume::Volume;
+
+/// Of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[derive(Serialize)]
 pub struct Stats<'a> {
@@ -63,6 +67,16 @@ pub struct DeviceStats {
     pub name: String,
     pub platform: String,
     pub driver: String,
+}
+
+impl From<&DeviceInfo> for DeviceStats {
+    fn from(info: &DeviceInfo) -> Self {
+        Self {
+            name: info.name.clone(),
+            platform: info.platform.clone(),
+            driver: info.driver.clone(),
+        }
+    }
 }
 
 #[derive(Serialize, Default)]

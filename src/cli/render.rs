@@ -13,14 +13,12 @@ use super::engine::{Caster, Engine};
 use super::job::JobArguments;
 use super::load::{Loaded, ms_since};
 use super::progress::Bars;
-use super::stats::{Memory, Stats, Times, VolumeStats};
+use super::stats::{Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
 use super::tolerance::{ToleranceStats, note_of};
 
 /// Of the random tiles of `--max-error`: the same in every run.
 const SEED: u64 = 1;
-
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Render a volume to a picture
 #[derive(clap::Args)]

@@ -6,12 +6,16 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::gpu::DeviceInfo;
 use crate::measure::Counts;
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
 use crate::volume::Volume;
 
 use super::tolerance::ToleranceStats;
+
+/// Of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[derive(Serialize)]
 pub struct Stats<'a> {
@@ -68,6 +72,16 @@ pub struct DeviceStats {
     pub name: String,
     pub platform: String,
     pub driver: String,
+}
+
+impl From<&DeviceInfo> for DeviceStats {
+    fn from(info: &DeviceInfo) -> Self {
+        Self {
+            name: info.name.clone(),
+            platform: info.platform.clone(),
+            driver: info.driver.clone(),
+        }
+    }
 }
 
 #[derive(Serialize, Default)]

@@ -7,6 +7,7 @@
 pub mod batch;
 pub mod bench;
 pub mod cli;
+pub mod compare;
 pub mod error;
 pub mod extent;
 pub mod frame;
@@ -21,6 +22,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod stop;
+pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};

@@ -1,6 +1,7 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod bench;
+mod compare;
 mod devices;
 mod engine;
 mod hardcase;
@@ -13,9 +14,11 @@ mod percentiles;
 mod phantom;
 mod progress;
 mod render;
+mod repeat;
 mod scene;
 mod stats;
 mod terminal;
+mod tolerance;
 
 use std::process::ExitCode;
 
@@ -44,6 +47,7 @@ struct Arguments {
 enum Command {
     Render(Box<render::RenderArguments>),
     Orbit(Box<orbit::OrbitArguments>),
+    Compare(Box<compare::CompareArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
@@ -55,6 +59,7 @@ impl Command {
         match self {
             Self::Render(arguments) => arguments.run(),
             Self::Orbit(arguments) => arguments.run(),
+            Self::Compare(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),

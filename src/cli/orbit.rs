@@ -17,10 +17,10 @@ use super::engine::{Caster, Engine};
 use super::job::{Job, JobArguments};
 use super::outputs;
 use super::progress::Bars;
-use super::render::{VERSION, gradient_note};
+use super::render::gradient_note;
 use super::stats::{
     self, DeviceStats, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times,
-    VolumeStats,
+    VERSION, VolumeStats,
 };
 use super::terminal::{message, note};
 
@@ -258,6 +258,7 @@ impl OrbitArguments {
                 passes: passes_of_all(&written),
                 counts: written.iter().filter_map(|w| w.about.counts).sum(),
                 memory,
+                max_error: None,
             },
             orbit: OrbitFigures {
                 frames: plan.frames,

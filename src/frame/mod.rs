@@ -9,6 +9,7 @@ mod format;
 mod jpeg;
 mod metadata;
 mod npy;
+pub mod palette;
 mod percentile;
 mod png;
 mod quantize;

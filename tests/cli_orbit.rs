@@ -508,3 +508,47 @@ fn the_statistics_hold_every_frame() {
     assert_eq!(stats["scene"], place.json("a.json")["scene"]);
     assert_ne!(frames[0]["counts"], place.json("a.json")["counts"]);
 }
+
+#[test]
+fn an_error_bound_chooses_one_setting_for_the_whole_orbit() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let place = place();
+    let device = format!("--device {}", device.info().id);
+    let orbit = "orbit v.nrrd --mode mip --size 24 --frames 5";
+    place.done(&format!(
+        "{orbit} --max-error max:0.03 -o f/%02d.png --stats s.json {device}"
+    ));
+    place.done(&format!("{orbit} -o truth/%02d.png {REFERENCE}"));
+    place.done(&format!(
+        "{orbit} -o coarse/%02d.png --step 8 --probe off {device}"
+    ));
+    let stats = place.json("s.json");
+    assert_eq!(stats["max_error"]["met"], true);
+    let verified = stats["orbit"]["verified"].as_array().unwrap();
+    assert!(verified.len() >= 2, "{verified:?}");
+    let how = |k: u32| {
+        let metadata = read_metadata(&place.path(&format!("f/{k:02}.png"))).unwrap();
+        let (_, scene) = metadata.iter().find(|(key, _)| key == "scene").unwrap();
+        let mut scene: toml::Table = scene.parse().unwrap();
+        scene.retain(|key, _| key != "eye" && key != "up");
+        scene
+    };
+    let mut coarse_most = 0;
+    for k in 0..5 {
+        assert_eq!(how(k), how(0));
+        let of = |folder: &str| pixels(&place.path(&format!("{folder}/{k:02}.png")));
+        let (_, most) = apart(&of("f"), &of("truth"));
+        // Both rounded to levels.
+        assert!(f64::from(most) <= 0.03 * 255.0 + 1.0, "{k}: {most}");
+        coarse_most = coarse_most.max(apart(&of("coarse"), &of("truth")).1);
+    }
+    // The control: there are settings that do not keep it.
+    assert!(f64::from(coarse_most) > 0.03 * 255.0 + 1.0, "{coarse_most}");
+    for flag in ["--resume", "--shard 0/2"] {
+        let line = format!("{orbit} --max-error max:0.03 -o f/%02d.png {flag} {device}");
+        let said = stderr(&place.run(&line));
+        assert!(said.contains("exclude each other"), "{said}");
+    }
+}

@@ -8,21 +8,27 @@ use crate::frame::{self, Animation, AnimationFormat, Encoding, FrameRate, Reel, 
 use crate::measure::Counts;
 use crate::progress::{Progress, Silent};
 use crate::render::GradientFigures;
+use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::scene::{AngleDeg, FilePath, Orbit, OrbitAxis, Resolved, Switch};
+use crate::scene::{
+    AngleDeg, ErrorBound, FilePath, Orbit, OrbitAxis, Resolved, SceneOptions, Switch,
+};
 use crate::stop;
+use crate::tolerance::{Choice, Task, choose_for_views};
 
 use super::engine::{Caster, Engine};
 use super::job::{Job, JobArguments};
+use super::load::Loaded;
 use super::outputs;
 use super::progress::Bars;
 use super::render::gradient_note;
 use super::stats::{
     self, DeviceStats, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times,
-    VERSION, VolumeStats,
+    VERSION, ViewStats, VolumeStats,
 };
 use super::terminal::{message, note};
+use super::tolerance::{SEED, ToleranceStats, note_of};
 
 /// Render a volume from all around: a picture per frame, or an animation
 #[derive(clap::Args)]
@@ -96,6 +102,8 @@ struct Plan {
     /// Of the frames; an animation's is that of its pictures.
     encoding: Encoding,
     stats: Option<PathBuf>,
+    /// What an error bound chose, as flags.
+    chosen: Option<String>,
 }
 
 impl OrbitOptions {
@@ -155,6 +163,13 @@ impl OrbitOptions {
             ))
             .hint("write .png or .exr"));
         }
+        if job.bound.is_some() && (resume || shard != Shard::WHOLE) {
+            let key = if resume { "resume" } else { "shard" };
+            return Err(Error::usage(format!(
+                "'max-error' and '{key}' exclude each other: each run would choose for itself, and frames would differ"
+            ))
+            .hint("choose once, by --max-error without it, and repeat the flags that were chosen"));
+        }
         let stats = job.output.stats.clone().map(|FilePath(path)| path);
         match &destination {
             Destination::Pictures { names, .. } => {
@@ -184,6 +199,7 @@ impl OrbitOptions {
             destination,
             encoding,
             stats,
+            chosen: None,
         })
     }
 }
@@ -205,7 +221,7 @@ impl OrbitArguments {
         let file = self.job.scene_file()?;
         let options = self.orbit.over(file.group()?);
         let job = self.job.over(&file)?;
-        let plan = options.plan(&job)?;
+        let mut plan = options.plan(&job)?;
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
@@ -213,17 +229,36 @@ impl OrbitArguments {
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;
-        let orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
+        let mut orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
 
         stop::listen()?;
         let mine: Vec<u32> = plan.shard.frames(plan.frames).collect();
         let missing = plan.missing(&orbit, &mine, &bars)?;
         let kept = mine.len() - missing.len();
         let mut written = Vec::new();
+        let mut chosen = None;
         if !missing.is_empty() {
             plan.destination.make_folder()?;
             let prepared = engine.prepare(&loaded.volume, &job.source, &bars)?;
             let mut caster = engine.caster(&loaded.volume, &prepared)?;
+            if let Some(bound) = job.bound {
+                let wanted = Wanted::for_encoding(&plan.encoding, plan.stats.is_some());
+                chosen = choose(
+                    bound,
+                    &job.options,
+                    &loaded,
+                    &orbit,
+                    wanted,
+                    &mut caster,
+                    &bars,
+                )?;
+            }
+            if let Some(chosen) = &chosen {
+                let first = (chosen.choice.setting.over(&job.options).checked()?)
+                    .resolve(&loaded.subject)?;
+                orbit = Orbit::new(first, plan.axis, plan.degrees, plan.frames)?;
+                plan.chosen = Some(chosen.choice.setting.flags());
+            }
             written = plan.make(&orbit, &missing, &mut caster, &bars)?;
         }
 
@@ -258,7 +293,7 @@ impl OrbitArguments {
                 passes: passes_of_all(&written),
                 counts: written.iter().filter_map(|w| w.about.counts).sum(),
                 memory,
-                max_error: None,
+                max_error: chosen.as_ref().map(|c| ToleranceStats::of(&c.choice)),
             },
             orbit: OrbitFigures {
                 frames: plan.frames,
@@ -266,6 +301,7 @@ impl OrbitArguments {
                 axis: orbit.axis().to_array(),
                 kept,
                 shard: plan.shard.to_string(),
+                verified: chosen.map_or(Vec::new(), |chosen| chosen.verified),
             },
             frames: written
                 .iter()
@@ -360,8 +396,14 @@ impl Plan {
             ))
             .hint("pictures, such as -o frames/%04d.png, can be gone on with after a stop"),
             Destination::Pictures { .. } if self.destination.tells_what_is_there() => {
-                Error::stopped(format!("stopped early: {made} of {of} frames are made"))
-                    .hint("the same command with --resume goes on")
+                Error::stopped(format!("stopped early: {made} of {of} frames are made")).hint(
+                    match &self.chosen {
+                        None => "the same command with --resume goes on".to_owned(),
+                        Some(flags) => {
+                            format!("--resume goes on, with {flags} instead of --max-error")
+                        }
+                    },
+                )
             }
             Destination::Pictures { .. } => {
                 Error::failed(format!("stopped early: {made} of {of} frames are made"))
@@ -404,6 +446,96 @@ impl Plan {
             last.about.device.name
         ));
     }
+}
+
+/// What an error bound chose for a whole orbit.
+struct Chosen {
+    choice: Choice,
+    verified: Vec<ViewStats>,
+}
+
+/// Chooses on the first frame, and on others that it does not hold for; verifies on frames from all
+/// around.
+fn choose(
+    bound: ErrorBound,
+    options: &SceneOptions,
+    loaded: &Loaded,
+    orbit: &Orbit,
+    wanted: Wanted,
+    caster: &mut Caster<'_>,
+    bars: &Bars,
+) -> Result<Option<Chosen>> {
+    let Caster::Device { renderer, .. } = caster else {
+        note(format_args!(
+            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+        ));
+        return Ok(None);
+    };
+    let frames = looked_at(orbit.frames());
+    let seen_from = |&frame: &u32| {
+        Ok(SceneOptions {
+            camera: orbit.at(frame)?.options.camera,
+            ..options.clone()
+        })
+    };
+    let options: Vec<SceneOptions> = frames.iter().map(seen_from).collect::<Result<_>>()?;
+    let tasks: Vec<Task> = options
+        .iter()
+        .zip(SEED..)
+        .map(|(options, seed)| Task {
+            volume: &loaded.volume,
+            subject: &loaded.subject,
+            options,
+            bound,
+            wanted,
+            seed,
+        })
+        .collect();
+    let (mut choice, checks) = choose_for_views(&tasks, renderer, bars)?;
+    choice.met &= checks.iter().all(|check| check.met);
+    note(note_of(&choice));
+    let verified: Vec<ViewStats> = checks
+        .iter()
+        .map(|check| ViewStats {
+            frame: frames[check.view],
+            met: check.met,
+            estimate: check.estimate,
+            upper: check.upper,
+            tiles: check.verified.tiles,
+            rays: check.verified.rays,
+        })
+        .collect();
+    let others: Vec<String> = verified
+        .iter()
+        .map(|view| format!("frame {}: {}", view.frame, concise_estimate(view.estimate)))
+        .collect();
+    if !others.is_empty() {
+        note(format_args!(
+            "max-error on other frames, estimated {}: {}",
+            bound.metric(),
+            others.join(", ")
+        ));
+    }
+    Ok(Some(Chosen { choice, verified }))
+}
+
+/// To three digits.
+fn concise_estimate(figure: f64) -> String {
+    concise(format!("{figure:.2e}").parse().unwrap_or(figure))
+}
+
+/// The first frame, and others spread by the golden ratio: no two of them opposite each other,
+/// where projections are mirror images.
+fn looked_at(frames: u32) -> Vec<u32> {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let mut looked_at = Vec::new();
+    for k in 0..4 {
+        let frame = (f64::from(frames) * (f64::from(k) * GOLDEN).fract()) as u32;
+        if !looked_at.contains(&frame) {
+            looked_at.push(frame);
+        }
+    }
+    looked_at
 }
 
 /// Sums over the frames; what was done once for all is counted once.

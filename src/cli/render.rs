@@ -15,10 +15,7 @@ use super::load::{Loaded, ms_since};
 use super::progress::Bars;
 use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
-use super::tolerance::{ToleranceStats, note_of};
-
-/// Of the random tiles of `--max-error`: the same in every run.
-const SEED: u64 = 1;
+use super::tolerance::{SEED, ToleranceStats, note_of};
 
 /// Render a volume to a picture
 #[derive(clap::Args)]

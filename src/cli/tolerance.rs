@@ -6,6 +6,9 @@ use crate::scene::options::concise;
 use crate::scene::{ErrorBound, ErrorMetric};
 use crate::tolerance::{CONFIDENCE, Choice};
 
+/// Of the random tiles: the same in every run.
+pub const SEED: u64 = 1;
+
 /// One sentence about a choice.
 pub fn note_of(choice: &Choice) -> String {
     let Choice {

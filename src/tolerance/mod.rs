@@ -20,15 +20,17 @@ mod deviation;
 mod evidence;
 mod student;
 mod tiles;
+mod views;
 
 use std::time::Instant;
 
 pub use candidates::candidates;
 pub use student::CONFIDENCE;
+pub use views::{Check, choose_for_views};
 
 use crate::error::Result;
 use crate::extent::ImageSize;
-use crate::frame::Wanted;
+use crate::frame::{Frame, Wanted};
 use crate::measure::interleaved;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::render::{Renderer, Rendering};
@@ -229,6 +231,22 @@ impl Search<'_, '_> {
         self.contenders[self.surest()].resolved.scene.size
     }
 
+    /// The surest picture, with its certificate where it has one.
+    fn surest_frame(&mut self) -> Result<Frame> {
+        let picture = &self.contenders[self.surest()].resolved.scene.picture;
+        let wanted = Wanted {
+            certificate: matches!(picture, Picture::Surface { .. }),
+            ..self.deviation.wanted()
+        };
+        Ok(self.render(self.surest(), self.size(), wanted)?.frame)
+    }
+
+    /// How many of the reference's rays a judgement takes.
+    fn rays(&self) -> usize {
+        let share = (RAYS_SHARE * self.size().pixels() as f64) as usize;
+        share.clamp(RAYS[0], RAYS[1])
+    }
+
     /// Those that are worth a look in the real picture, the fastest first: in a small picture within
     /// the bound, and no slower than the surest.
     fn screen(&mut self) -> Result<Vec<usize>> {
@@ -293,15 +311,10 @@ impl Search<'_, '_> {
         let size = self.size();
         let surest = self.surest();
         let surest_scene = self.contenders[surest].resolved.scene.clone();
-        let wanted = Wanted {
-            certificate: matches!(surest_scene.picture, Picture::Surface { .. }),
-            ..self.deviation.wanted()
-        };
-        let frame = self.render(surest, size, wanted)?.frame;
+        let frame = self.surest_frame()?;
         let mut evidence =
             Evidence::new(self.deviation, task.volume, &surest_scene, frame, task.seed)?;
-        let rays = (RAYS_SHARE * size.pixels() as f64) as usize;
-        let rays = rays.clamp(RAYS[0], RAYS[1]);
+        let rays = self.rays();
         let sample = evidence.draw(rays);
 
         let mut queue = queue.into_iter().peekable();

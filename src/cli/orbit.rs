@@ -222,6 +222,9 @@ impl OrbitArguments {
         let options = self.orbit.over(file.group()?);
         let job = self.job.over(&file)?;
         let mut plan = options.plan(&job)?;
+        // Before the device is opened: OpenCL drivers catch signals too, and end the process by their
+        // own unless they were there last.
+        stop::listen()?;
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
@@ -231,7 +234,6 @@ impl OrbitArguments {
         plan.destination.check_size(resolved.scene.size)?;
         let mut orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
 
-        stop::listen()?;
         let mine: Vec<u32> = plan.shard.frames(plan.frames).collect();
         let missing = plan.missing(&orbit, &mine, &bars)?;
         let kept = mine.len() - missing.len();

@@ -18,6 +18,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             four radii and on the volumes named",
     takes_volumes: true,
     counts_rays: false,
+    times_frames: true,
     run,
 };
 
@@ -124,11 +125,7 @@ struct Measured {
 fn run(bench: &Bench) -> Result<Outcome> {
     let vessels = RADII.map(|radius| Specimen::straight_vessels(radius, VESSELS));
     let vessels: Vec<Specimen> = vessels.into_iter().collect::<Result<_>>()?;
-    let mut outcome = Outcome {
-        table: Table::new(&COLUMNS),
-        findings: Vec::new(),
-        failure: None,
-    };
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
     let mut costs = Costs::default();
     for specimen in vessels.iter().chain(&bench.specimens) {
         let measured = measure(bench, specimen)?;

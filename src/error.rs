@@ -14,6 +14,21 @@ pub enum ErrorKind {
     Usage,
     /// No usable OpenCL device. Exit code 3.
     NoDevice,
+    /// Asked to stop before the end; what is done is whole, and the rest can be done later. Exit
+    /// code 75.
+    Stopped,
+}
+
+impl ErrorKind {
+    /// The process's exit code (1 failed, 2 usage, 3 no device, 75 stopped early).
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Failed => 1,
+            Self::Usage => 2,
+            Self::NoDevice => 3,
+            Self::Stopped => 75,
+        }
+    }
 }
 
 /// One clear sentence about what is wrong and where, with a hint where we know a cure.
@@ -38,6 +53,11 @@ impl Error {
     /// No usable OpenCL device (exit code 3).
     pub fn no_device(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::NoDevice, message)
+    }
+
+    /// Stopped early, to be gone on with later (exit code 75).
+    pub fn stopped(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Stopped, message)
     }
 
     fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
@@ -75,13 +95,9 @@ impl Error {
         self.hint.as_deref()
     }
 
-    /// The process's exit code for this error (CONTRACT: 1 failed, 2 usage, 3 no device).
+    /// The process's exit code for this error.
     pub fn exit_code(&self) -> u8 {
-        match self.kind {
-            ErrorKind::Failed => 1,
-            ErrorKind::Usage => 2,
-            ErrorKind::NoDevice => 3,
-        }
+        self.kind.exit_code()
     }
 }
 

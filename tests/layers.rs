@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const GROUND: &[&str] = &["error", "extent", "output", "progress"];
+const GROUND: &[&str] = &["error", "extent", "output", "progress", "stop"];
 
 /// A module and the modules, beside the ground floor's, that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
@@ -11,6 +11,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("extent", &[]),
     ("output", &[]),
     ("progress", &[]),
+    ("stop", &[]),
     ("volume", &[]),
     ("scene", &[]),
     ("frame", &[]),

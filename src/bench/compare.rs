@@ -1,4 +1,4 @@
-//! Whether two pictures are the same to the last bit, and what each took.
+//! Whether two pictures are the same to the last bit.
 
 use crate::frame::Frame;
 
@@ -14,11 +14,4 @@ pub fn same_picture(a: &Frame, b: &Frame) -> bool {
         && same(a.value.as_deref(), b.value.as_deref())
         && same(a.kind.as_deref(), b.kind.as_deref())
         && same(a.certificate.as_deref(), b.certificate.as_deref())
-}
-
-/// The mean of a counter over the rays of a picture.
-pub fn a_ray(counts: &Option<Vec<u32>>) -> f64 {
-    let counts = counts.as_deref().unwrap_or_default();
-    let sum: f64 = counts.iter().map(|&n| f64::from(n)).sum();
-    sum / counts.len().max(1) as f64
 }

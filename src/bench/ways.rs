@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::frame::error::{color_error, depth_error};
 use crate::frame::{Frame, Wanted};
-use crate::measure::Times;
+use crate::measure::{Counts, Times};
 use crate::octree::{Leaf, Octree};
 use crate::reference;
 use crate::render::Renderer;
@@ -17,7 +17,7 @@ use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene};
 use crate::volume::PhantomKind;
 
 use super::borderline::Borderline;
-use super::compare::{a_ray, same_picture};
+use super::compare::same_picture;
 use super::{Bench, Effort, Outcome, Protocol, Specimen, display_ms};
 
 /// A way to make a picture.
@@ -171,13 +171,8 @@ pub fn measure(
     let mut found = Vec::new();
     for (way, frame) in ways.iter().zip(&frames) {
         let (surface, light) = truths.judge(way, frame)?;
-        found.push((
-            way,
-            surface,
-            light,
-            a_ray(&frame.steps),
-            a_ray(&frame.nodes),
-        ));
+        let counts = Counts::of(frame, &way.scene.picture);
+        found.push((way, surface, light, counts));
     }
     let same: Vec<Option<bool>> = ways
         .iter()
@@ -190,18 +185,16 @@ pub fn measure(
     })?;
     let found = found.into_iter().zip(times).zip(same);
     Ok(found
-        .map(
-            |(((way, surface, light, samples, nodes), times), same)| Found {
-                name: way.name.clone(),
-                paper: way.paper,
-                times,
-                samples,
-                nodes,
-                same,
-                surface,
-                light,
-            },
-        )
+        .map(|(((way, surface, light, counts), times), same)| Found {
+            name: way.name.clone(),
+            paper: way.paper,
+            times,
+            samples: counts.samples_per_ray(),
+            nodes: counts.nodes_per_ray(),
+            same,
+            surface,
+            light,
+        })
         .collect())
 }
 

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
+use crate::measure::Counts;
 use crate::render::GradientFigures;
 use crate::scene::{FilePath, SceneOptions, TransferChoice};
 use crate::volume::files_of;
@@ -14,7 +15,7 @@ use super::load::{Source, ms_since};
 use super::outputs::{OutputOptions, absolute};
 use super::progress::Bars;
 use super::scene::SceneArgument;
-use super::stats::{Counts, Memory, Stats, Times, VolumeStats};
+use super::stats::{Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");

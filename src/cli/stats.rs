@@ -6,9 +6,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::frame::Frame;
+use crate::measure::Counts;
 use crate::output::write_atomically;
-use crate::scene::{Picture, SceneOptions};
+use crate::scene::SceneOptions;
 use crate::volume::Volume;
 
 #[derive(Serialize)]
@@ -86,43 +86,6 @@ pub struct Times {
 pub struct PassStats {
     pub name: String,
     pub ms: f64,
-}
-
-#[derive(Serialize)]
-pub struct Counts {
-    pub rays: u64,
-    pub samples: u64,
-    pub nodes: u64,
-    pub hits: u64,
-    /// Pixels of which neither a hit nor a miss is proven; where the certificate was asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub undecided: Option<u64>,
-}
-
-impl Counts {
-    /// From a frame with counters and kinds. In emission a hit is a pixel with any opacity.
-    pub fn of(frame: &Frame, picture: &Picture) -> Self {
-        let sum = |plane: &Option<Vec<u32>>| {
-            let counts = plane.iter().flatten();
-            counts.map(|&n| u64::from(n)).sum()
-        };
-        let hits = match picture {
-            Picture::Emission(_) => frame.color.iter().filter(|c| c[3] > 0.0).count(),
-            _ => frame
-                .kind
-                .iter()
-                .flatten()
-                .filter(|&&kind| kind > 0)
-                .count(),
-        };
-        Self {
-            rays: frame.size.pixels() as u64,
-            samples: sum(&frame.steps),
-            nodes: sum(&frame.nodes),
-            hits: hits as u64,
-            undecided: frame.undecided(),
-        }
-    }
 }
 
 #[derive(Serialize)]

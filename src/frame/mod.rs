@@ -75,6 +75,45 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Everything 0, with the planes that are wanted.
+    pub fn blank(size: ImageSize, wanted: Wanted) -> Self {
+        fn plane<T: Clone + Default>(wanted: bool, pixels: usize) -> Option<Vec<T>> {
+            wanted.then(|| vec![T::default(); pixels])
+        }
+        let pixels = size.pixels();
+        Self {
+            size,
+            color: vec![[0.0; 4]; pixels],
+            display: plane(wanted.display, pixels),
+            depth: plane(wanted.depth, pixels),
+            normal: plane(wanted.normal, pixels),
+            value: plane(wanted.value, pixels),
+            steps: plane(wanted.counters, pixels),
+            nodes: plane(wanted.counters, pixels),
+            kind: plane(wanted.kind, pixels),
+            certificate: plane(wanted.certificate, pixels),
+        }
+    }
+
+    /// The planes that are there, the colour first, as bytes in the machine's order.
+    pub fn bytes_mut(&mut self) -> Vec<&mut [u8]> {
+        fn bytes<T: bytemuck::Pod>(plane: &mut Option<Vec<T>>) -> Option<&mut [u8]> {
+            plane.as_mut().map(|plane| bytemuck::cast_slice_mut(plane))
+        }
+        let planes = [
+            Some(bytemuck::cast_slice_mut(&mut self.color)),
+            bytes(&mut self.display),
+            bytes(&mut self.depth),
+            bytes(&mut self.normal),
+            bytes(&mut self.value),
+            bytes(&mut self.steps),
+            bytes(&mut self.nodes),
+            bytes(&mut self.kind),
+            bytes(&mut self.certificate),
+        ];
+        planes.into_iter().flatten().collect()
+    }
+
     /// Pixels whose [`Certificate`] is undecided, where there are certificates.
     pub fn undecided(&self) -> Option<u64> {
         let certificates = self.certificate.as_ref()?;

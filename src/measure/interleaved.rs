@@ -27,11 +27,29 @@ impl Times {
         middle(self.rounds.clone())
     }
 
+    /// How far the rounds lie from their median: the median of the absolute deviations.
+    pub fn mad_ms(&self) -> f64 {
+        let median = self.median_ms();
+        middle(self.rounds.iter().map(|ms| (ms - median).abs()).collect())
+    }
+
+    pub fn repeats(&self) -> usize {
+        self.rounds.len()
+    }
+
     /// How many times as long as `other`: the middle one of the rounds' own ratios, which what
     /// disturbs a whole round leaves as they are.
     pub fn over(&self, other: &Self) -> f64 {
         let rounds = self.rounds.iter().zip(&other.rounds);
         middle(rounds.map(|(own, other)| own / other).collect())
+    }
+}
+
+impl FromIterator<f64> for Times {
+    fn from_iter<I: IntoIterator<Item = f64>>(rounds: I) -> Self {
+        Self {
+            rounds: rounds.into_iter().collect(),
+        }
     }
 }
 
@@ -42,25 +60,39 @@ fn middle(mut entries: Vec<f64>) -> f64 {
 }
 
 /// Runs each of `settings` once to warm up, then all of them in turn, `repeats` times (at least
-/// once): what disturbs a round disturbs all settings alike. `once` gives a setting's ms.
+/// once): what disturbs a round disturbs all settings alike. Gives what `once` gave, for every
+/// setting one a round, the warm-up left out.
+///
+/// # Errors
+/// Those of `once`.
+pub fn rounds<S, T>(
+    settings: &[S],
+    repeats: usize,
+    mut once: impl FnMut(&S) -> Result<T>,
+) -> Result<Vec<Vec<T>>> {
+    let mut given: Vec<Vec<T>> = settings.iter().map(|_| Vec::new()).collect();
+    for round in 0..=repeats.max(1) {
+        for (setting, given) in settings.iter().zip(&mut given) {
+            let one = once(setting)?;
+            if round > 0 {
+                given.push(one);
+            }
+        }
+    }
+    Ok(given)
+}
+
+/// [`rounds`] of which nothing but the ms is kept.
 ///
 /// # Errors
 /// Those of `once`.
 pub fn interleaved<S>(
     settings: &[S],
     repeats: usize,
-    mut once: impl FnMut(&S) -> Result<f64>,
+    once: impl FnMut(&S) -> Result<f64>,
 ) -> Result<Vec<Times>> {
-    let mut times = vec![Times { rounds: Vec::new() }; settings.len()];
-    for round in 0..=repeats.max(1) {
-        for (setting, times) in settings.iter().zip(&mut times) {
-            let ms = once(setting)?;
-            if round > 0 {
-                times.rounds.push(ms);
-            }
-        }
-    }
-    Ok(times)
+    let rounds = rounds(settings, repeats, once)?;
+    Ok(rounds.into_iter().map(Times::from_iter).collect())
 }
 
 #[cfg(test)]
@@ -80,6 +112,8 @@ mod tests {
         .unwrap();
         assert_eq!(order.iter().collect::<String>(), "abababab");
         assert_eq!((times[0].min_ms(), times[0].median_ms()), (3.0, 5.0));
+        // Of 2, 0 and 2.
+        assert_eq!((times[0].mad_ms(), times[0].repeats()), (2.0, 3));
         assert_eq!((times[1].min_ms(), times[1].median_ms()), (4.0, 6.0));
         // Of 4/3, 6/5 and 8/7.
         assert!((times[1].over(&times[0]) - 1.2).abs() < 1e-12);

@@ -1,7 +1,9 @@
-//! Tables of results: for reading (Markdown), for programs (CSV and JSON, unrounded).
+//! Tables of results: for reading (Markdown, HTML), for programs (CSV and JSON, unrounded).
 
 use std::fmt::Write;
 
+use base64::prelude::{BASE64_STANDARD, Engine};
+use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -80,6 +82,24 @@ impl Shown {
     }
 }
 
+impl Cell {
+    fn html(&self, heads_row: bool, shown: Shown) -> Markup {
+        let (text, value) = match self {
+            Self::Text(text) => (text.clone(), None),
+            Self::Number(number) => (shown.text(*number), Some(number.to_string())),
+            Self::Nothing => ("–".to_owned(), Some(String::new())),
+        };
+        let class = value.as_ref().map(|_| "number");
+        html! {
+            @if heads_row {
+                th scope="row" class=[class] data-value=[value] { (text) }
+            } @else {
+                td class=[class] data-value=[value] { (text) }
+            }
+        }
+    }
+}
+
 /// A column: its name for programs (unit behind it), for people, and how it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
@@ -93,6 +113,8 @@ pub struct Column {
 pub struct Table {
     columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
+    /// Rows of settings on the Pareto front, by their number.
+    on_front: Vec<usize>,
 }
 
 impl Table {
@@ -102,6 +124,7 @@ impl Table {
         Self {
             columns: columns.iter().map(column).collect(),
             rows: Vec::new(),
+            on_front: Vec::new(),
         }
     }
 
@@ -109,6 +132,12 @@ impl Table {
     pub fn push(&mut self, mut row: Vec<Cell>) {
         row.resize(self.columns.len(), Cell::Nothing);
         self.rows.push(row);
+    }
+
+    /// Appends the row of a setting on the Pareto front, which a page makes stand out.
+    pub fn push_on_front(&mut self, row: Vec<Cell>) {
+        self.on_front.push(self.rows.len());
+        self.push(row);
     }
 
     pub fn rows(&self) -> &[Vec<Cell>] {
@@ -135,6 +164,48 @@ impl Table {
         }
         text.push('\n');
         text
+    }
+
+    /// For a page, about `what`; rounded like [`Self::markdown`], with the unrounded figures to sort
+    /// by and, as CSV, to take along.
+    pub(super) fn html(&self, what: &str) -> Markup {
+        html! {
+            div.table.card {
+                @if self.rows.is_empty() {
+                    p.none { "There are no rows." }
+                } @else {
+                    div.scroll tabindex="0" role="region" aria-label={ "Table: " (what) } {
+                        table.sortable {
+                            thead { tr { @for (n, column) in self.columns.iter().enumerate() {
+                                th scope="col" class=[self.is_number(n).then_some("number")] {
+                                    (column.title)
+                                }
+                            } } }
+                            tbody { @for (n, row) in self.rows.iter().enumerate() {
+                                tr class=[self.on_front.contains(&n).then_some("front")] {
+                                    @for (n, (column, cell)) in self.columns.iter().zip(row).enumerate() {
+                                        (cell.html(n == 0, column.shown))
+                                    }
+                                }
+                            } }
+                        }
+                    }
+                    p.note {
+                        @if !self.on_front.is_empty() { span.front { "on the Pareto front" } }
+                        a download="table.csv" href={
+                            "data:text/csv;charset=utf-8;base64," (BASE64_STANDARD.encode(self.csv()))
+                        } { "Take the unrounded figures along (CSV)" }
+                    }
+                }
+            }
+        }
+    }
+
+    /// That a column has figures and no text.
+    fn is_number(&self, column: usize) -> bool {
+        let mut cells = self.rows.iter().map(|row| &row[column]);
+        cells.clone().any(|cell| matches!(cell, Cell::Number(_)))
+            && !cells.any(|cell| matches!(cell, Cell::Text(_)))
     }
 
     /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure.

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::compare::{a_ray, same_picture};
+use super::super::compare::same_picture;
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
-use crate::measure::Times;
+use crate::measure::{Counts, Times};
 use crate::render::Renderer;
 use crate::report::{Shown, Table};
 use crate::scene::{SamplingMethod, Scene, Traverse};
@@ -140,11 +140,14 @@ fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<
         .map(|scene| Ok(renderer.render(scene, Wanted::ALL)?.frame))
         .collect::<Result<_>>()?;
     let times = bench.times(renderer, &scenes)?;
-    let found = frames.iter().zip(times).map(|(frame, times)| Found {
-        times,
-        nodes_per_ray: a_ray(&frame.nodes),
-        samples_per_ray: a_ray(&frame.steps),
-        same: same_picture(frame, &frames[place(RIVAL)]),
+    let found = frames.iter().zip(times).map(|(frame, times)| {
+        let counts = Counts::of(frame, &scene.picture);
+        Found {
+            times,
+            nodes_per_ray: counts.nodes_per_ray(),
+            samples_per_ray: counts.samples_per_ray(),
+            same: same_picture(frame, &frames[place(RIVAL)]),
+        }
     });
     Ok(found.collect())
 }

@@ -1,0 +1,156 @@
+//! The reference's pictures, each computed once.
+//!
+//! The reference takes seconds where a device takes milliseconds. Its pictures are kept in a
+//! folder, each under a hash of everything that it depends on: the voxels and their geometry, the
+//! scene, the planes asked for, and the program itself. So nothing stale is ever taken for the
+//! truth.
+
+use std::fmt::Write as _;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Wanted};
+use crate::output::write_atomically;
+use crate::progress::Progress;
+use crate::reference;
+use crate::scene::Scene;
+use crate::volume::Volume;
+
+/// Where reference pictures of one volume come from.
+pub struct Truth<'a> {
+    volume: &'a Volume,
+    cache: Option<Cache>,
+}
+
+/// A folder of pictures of one volume.
+struct Cache {
+    folder: PathBuf,
+    /// Of program and volume.
+    hasher: blake3::Hasher,
+}
+
+/// A reference picture, and whether it had to be computed.
+pub struct TrueFrame {
+    pub frame: Frame,
+    pub computed: bool,
+}
+
+impl<'a> Truth<'a> {
+    /// Pictures are computed whenever they are asked for.
+    pub fn uncached(volume: &'a Volume) -> Self {
+        Self {
+            volume,
+            cache: None,
+        }
+    }
+
+    /// Pictures are kept in `folder`, which is made where there is none.
+    ///
+    /// # Errors
+    /// The folder cannot be made; the program cannot read its own file.
+    pub fn kept_in(folder: &Path, volume: &'a Volume) -> Result<Self> {
+        std::fs::create_dir_all(folder)
+            .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
+        let mut hasher = blake3::Hasher::new();
+        hash_program(&mut hasher)?;
+        hash_volume(&mut hasher, volume);
+        Ok(Self {
+            volume,
+            cache: Some(Cache {
+                folder: folder.to_owned(),
+                hasher,
+            }),
+        })
+    }
+
+    /// The reference's picture of `scene`.
+    ///
+    /// # Errors
+    /// As [`reference::render`]; the folder's disk. A kept picture that cannot be read is computed
+    /// again.
+    pub fn frame(
+        &self,
+        scene: &Scene,
+        wanted: Wanted,
+        progress: &dyn Progress,
+    ) -> Result<TrueFrame> {
+        let kept = self.cache.as_ref().map(|cache| cache.path(scene, wanted));
+        if let Some(path) = &kept
+            && let Some(frame) = read(path, scene, wanted)
+        {
+            return Ok(TrueFrame {
+                frame,
+                computed: false,
+            });
+        }
+        let frame = reference::render(self.volume, scene, wanted, progress)?;
+        if let Some(path) = &kept {
+            write(path, &frame)?;
+        }
+        Ok(TrueFrame {
+            frame,
+            computed: true,
+        })
+    }
+}
+
+impl Cache {
+    fn path(&self, scene: &Scene, wanted: Wanted) -> PathBuf {
+        let mut hasher = self.hasher.clone();
+        // Debug output names every field, and prints floats so that they read back as they were.
+        hasher.update(format!("{scene:?} {wanted:?}").as_bytes());
+        let mut name = String::new();
+        for byte in &hasher.finalize().as_bytes()[..16] {
+            let _ = write!(name, "{byte:02x}");
+        }
+        self.folder.join(name + ".frame")
+    }
+}
+
+/// A program built anew may have another reference.
+fn hash_program(hasher: &mut blake3::Hasher) -> Result<()> {
+    let failed = |cause: std::io::Error| {
+        Error::failed(format!("the program cannot read its own file: {cause}"))
+    };
+    let path = std::env::current_exe().map_err(failed)?;
+    let file = std::fs::File::open(path).map_err(failed)?;
+    hasher.update_reader(file).map_err(failed)?;
+    Ok(())
+}
+
+fn hash_volume(hasher: &mut blake3::Hasher, volume: &Volume) {
+    let (dims, kind) = (volume.dims().array(), volume.voxels().voxel_type().name());
+    let (geometry, rescale) = (volume.geometry(), volume.rescale());
+    hasher.update(format!("{dims:?} {kind} {geometry:?} {rescale:?}").as_bytes());
+    hasher.update(volume.voxels().bytes());
+}
+
+/// The colour and then the other planes, zlib-compressed (whose checksum shows a torn file).
+fn write(path: &Path, frame: &Frame) -> Result<()> {
+    let failed = |cause| Error::io(path, "write", &cause);
+    write_atomically(path, |out| {
+        let mut out = ZlibEncoder::new(out, Compression::fast());
+        let mut frame = frame.clone();
+        for plane in frame.bytes_mut() {
+            out.write_all(plane).map_err(failed)?;
+        }
+        out.finish().map_err(failed)?;
+        Ok(())
+    })
+}
+
+/// The picture kept in `path`; nothing where there is none, or none that is whole.
+fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
+    let mut file = ZlibDecoder::new(std::fs::File::open(path).ok()?);
+    let mut frame = Frame::blank(scene.size, wanted);
+    for plane in frame.bytes_mut() {
+        file.read_exact(plane).ok()?;
+    }
+    let at_end = file.read(&mut [0]).ok()? == 0;
+    at_end.then_some(frame)
+}

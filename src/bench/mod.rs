@@ -122,7 +122,7 @@ impl Bench<'_> {
     fn timed(&self) -> String {
         let side_px = self.effort.side_px();
         format!(
-            "times are {} pictures of {side_px}x{side_px} pixels unless told otherwise, on {}; \
+            "times are {}: pictures of {side_px}x{side_px} pixels unless told otherwise, on {}; \
              ratios are the medians of each round's own",
             self.protocol().told(self.effort),
             self.device.info().name

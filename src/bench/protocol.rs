@@ -38,18 +38,16 @@ impl Protocol {
         }
     }
 
-    /// What times of it are, for the findings: "the median of 5 repeats in turn of".
+    /// What times of it are, for the findings.
     pub(super) fn told(self, effort: Effort) -> String {
         let frames = self.frames(effort);
-        match self {
-            Self::Static => format!(
-                "the least, the median and the 95th percentile of {frames} repeats in turn of"
-            ),
-            Self::Orbit => format!(
-                "the least, the median and the 95th percentile of one orbit of {frames} frames, \
-                 every setting in turn at each place:"
-            ),
-        }
+        let of = match self {
+            Self::Static => format!("{frames} repeats in turn"),
+            Self::Orbit => {
+                format!("an orbit of {frames} frames, all settings in turn at each place")
+            }
+        };
+        format!("the least, the median and the 95th percentile of {of}")
     }
 
     /// How far the camera has gone in a frame, degrees.

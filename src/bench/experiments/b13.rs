@@ -53,7 +53,7 @@ fn by_planes(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
             clip_planes: around(specimen, count)?,
             ..scene.clone()
         };
-        let way = Way::new(format!("{count} planes"), scene);
+        let way = Way::new(format!("planes: {count}"), scene);
         Ok(way.paper_fps(of_paper.map(|(_, fps)| *fps)).same_as(0))
     });
     ways.collect()

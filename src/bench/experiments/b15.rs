@@ -67,8 +67,8 @@ fn run(bench: &Bench) -> Result<Outcome> {
     );
     let told = protocols.iter().map(|protocol| protocol.told(bench.effort));
     outcome.findings.push(format!(
-        "times are {} pictures of {1}x{1} pixels",
-        told.collect::<Vec<_>>().join("; or "),
+        "times are {}: pictures of {1}x{1} pixels",
+        told.collect::<Vec<_>>().join(", or "),
         bench.effort.side_px()
     ));
     Ok(outcome)

@@ -52,17 +52,17 @@ fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
 
 fn tell(volume: &str, found: &[Found]) -> String {
     let of = |place: usize| found[place].surface;
-    let p99 = |place: usize| of(place).and_then(|s| s.depth_p99).unwrap_or(0.0);
+    let mean = |place: usize| of(place).and_then(|s| s.depth_mean).unwrap_or(0.0);
     let missed = |place: usize| 100.0 * of(place).and_then(|s| s.missed_share).unwrap_or(0.0);
     format!(
-        "{volume}: six bisections bring the depth's 99th percentile from {:.3} to {:.3} voxels at \
-         step 5, from {:.3} to {:.3} at step 1, but no hit back: {:.2} % are missed at step 5 and \
-         {:.2} % at step 1, refined or not; so 'no visible difference' at step 5 holds only where \
-         nothing thin is missed",
-        p99(3),
-        p99(4),
-        p99(0),
-        p99(1),
+        "{volume}: six bisections bring the mean depth error from {:.3} to {:.3} voxels at step 5, \
+         from {:.3} to {:.3} at step 1; what is left is of rays that stepped over a surface and met \
+         another behind it. They bring no hit back: {:.2} % are missed at step 5 and {:.2} % at step \
+         1, refined or not; 'no visible difference' at step 5 holds where nothing thin is missed",
+        mean(3),
+        mean(4),
+        mean(0),
+        mean(1),
         missed(4),
         missed(1),
     )

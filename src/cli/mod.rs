@@ -5,6 +5,7 @@ mod devices;
 mod engine;
 mod hardcase;
 mod info;
+mod job;
 mod load;
 mod outputs;
 mod percentiles;

@@ -98,7 +98,7 @@ pub struct Files {
 
 impl Files {
     /// That what is to be written can be, before hours of work, and replaces no input.
-    pub fn check(&self, inputs: &[&Path]) -> Result<()> {
+    pub fn check(&self, inputs: &[impl AsRef<Path>]) -> Result<()> {
         check(&self.picture, inputs)?;
         let Some(stats) = &self.stats else {
             return Ok(());
@@ -115,8 +115,11 @@ impl Files {
 }
 
 /// That `path` can be written, and is none of the files that the job reads.
-pub fn check(path: &Path, inputs: &[&Path]) -> Result<()> {
-    if inputs.iter().any(|input| place(input) == place(path)) {
+pub fn check(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
+    if inputs
+        .iter()
+        .any(|input| place(input.as_ref()) == place(path))
+    {
         return Err(Error::usage(format!(
             "{}: this file is read, writing would replace it",
             path.display()

@@ -1,20 +1,16 @@
 //! `angioray render`.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::{self, Wanted};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
-use crate::scene::{FilePath, SceneOptions, TransferChoice};
-use crate::volume::files_of;
 
-use super::engine::{DeviceOptions, Engine};
-use super::load::{Source, ms_since};
-use super::outputs::{OutputOptions, absolute};
+use super::engine::Engine;
+use super::job::JobArguments;
+use super::load::ms_since;
 use super::progress::Bars;
-use super::scene::SceneArgument;
 use super::stats::{Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 
@@ -30,50 +26,25 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
   angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference")]
 pub struct RenderArguments {
     #[command(flatten)]
-    options: SceneOptions,
-
-    #[command(flatten)]
-    scene: SceneArgument,
-
-    #[command(flatten)]
-    output: OutputOptions,
-
-    #[command(flatten)]
-    device: DeviceOptions,
+    job: JobArguments,
 }
 
 impl RenderArguments {
     pub fn run(self) -> Result<()> {
-        let file = self.scene.open()?;
-        let options = self.options.over(SceneOptions::of_file(&file)?);
-        let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
-        let mut options = options.checked()?;
-        let output = OutputOptions::of_file(&file)?;
-        let output = self.output.clone().over(self.output.keep_of(output));
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
-
-        let files = output.files()?;
-        let source = Source::of(&options.volume)?;
-        let volume_files = files_of(&source.path);
-        let inputs = [self.scene.path(), transfer_file.as_deref()];
-        let volume_files = volume_files.iter().map(PathBuf::as_path);
-        let inputs: Vec<&Path> = inputs.into_iter().flatten().chain(volume_files).collect();
-        files.check(&inputs)?;
-        // The scene that is stored renders the same volume from wherever it is read, in the same
-        // way.
-        options.volume.volume = Some(FilePath(absolute(&source.path)));
-        options.volume.octree_leaf = Some(source.leaf.edge());
-        let engine = Engine::open(&device)?;
+        let file = self.job.scene_file()?;
+        let job = self.job.over(&file)?;
+        let files = job.output.files()?;
+        files.check(&job.inputs)?;
+        let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = source.load(&bars)?;
-        let resolved = options.resolve(&loaded.subject)?;
+        let loaded = job.source.load(&bars)?;
+        let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         files.encoding.check_size(resolved.scene.size)?;
 
         let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
-        let prepared = engine.prepare(&loaded.volume, &source, &bars)?;
+        let prepared = engine.prepare(&loaded.volume, &job.source, &bars)?;
         let mut caster = engine.caster(&loaded.volume, &prepared)?;
         let rendered = caster.render(&resolved.scene, wanted, &bars)?;
 
@@ -112,7 +83,7 @@ impl RenderArguments {
             version: VERSION,
             command: "render",
             scene: &resolved.options,
-            volume: VolumeStats::of(&source.path, &loaded.volume, loaded.non_finite),
+            volume: VolumeStats::of(&job.source.path, &loaded.volume, loaded.non_finite),
             device: rendered.device,
             channels: frame::channels(&files.encoding),
             times_ms,

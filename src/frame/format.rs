@@ -61,6 +61,11 @@ impl Format {
         !self.carries_layers()
     }
 
+    /// Whether it carries the scene and the version as texts.
+    pub fn carries_metadata(self) -> bool {
+        matches!(self, Self::Png | Self::Exr)
+    }
+
     /// Whether it holds the layers beside the colour.
     pub fn carries_layers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)

@@ -1,6 +1,7 @@
 //! Image planes: the layers of one picture, row 0 at the top, x fastest; written as files
 //! ([`write()`]) and compared with each other ([`mod@error`]).
 
+mod animation;
 mod channel;
 pub mod error;
 mod exr;
@@ -12,11 +13,14 @@ mod percentile;
 mod png;
 mod quantize;
 mod webp;
+mod whole;
 mod write;
 
+pub use animation::{Animation, AnimationFormat, FrameRate};
 pub use format::{BitDepth, Encoding, Format, channels};
 pub use metadata::read_metadata;
 pub use percentile::percentile;
+pub use whole::is_whole;
 pub use write::write;
 
 use crate::error::{Error, Result};

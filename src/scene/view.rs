@@ -92,7 +92,7 @@ impl Orientation {
 }
 
 /// Exact at multiples of 90°.
-fn sin_cos_deg(degrees: f64) -> (f64, f64) {
+pub(super) fn sin_cos_deg(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),
         90.0 => (1.0, 0.0),

@@ -259,7 +259,7 @@ impl CameraOptions {
     }
 
     /// From filled options.
-    pub(super) fn camera(&self) -> Result<Camera> {
+    pub(in crate::scene) fn camera(&self) -> Result<Camera> {
         let lens = match self.ortho {
             Some(height) => Lens::Orthographic {
                 height_mm: height.get(),

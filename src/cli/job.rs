@@ -1,0 +1,72 @@
+//! What every command that renders is told: the scene, the files, the device.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::Result;
+use crate::scene::{FilePath, SceneFile, SceneOptions, TransferChoice};
+use crate::volume::files_of;
+
+use super::engine::DeviceOptions;
+use super::load::Source;
+use super::outputs::{OutputOptions, absolute};
+use super::scene::SceneArgument;
+
+#[derive(clap::Args)]
+pub struct JobArguments {
+    #[command(flatten)]
+    options: SceneOptions,
+
+    #[command(flatten)]
+    scene: SceneArgument,
+
+    #[command(flatten)]
+    output: OutputOptions,
+
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+/// Flags over the scene file, checked as far as can be without reading the volume.
+pub struct Job {
+    /// The scene that is stored renders the same volume from wherever it is read, in the same way:
+    /// its volume's path is absolute and its octree's leaf is given.
+    pub options: SceneOptions,
+    pub output: OutputOptions,
+    pub device: DeviceOptions,
+    pub source: Source,
+    /// Every file that is read.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl JobArguments {
+    /// The scene file named, or one that says nothing.
+    pub fn scene_file(&self) -> Result<SceneFile> {
+        self.scene.open()
+    }
+
+    /// # Errors
+    /// Options that contradict each other, a transfer function that cannot be read, no volume.
+    pub fn over(self, file: &SceneFile) -> Result<Job> {
+        let options = self.options.over(SceneOptions::of_file(file)?);
+        let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
+        let mut options = options.checked()?;
+        let output = OutputOptions::of_file(file)?;
+        let output = self.output.clone().over(self.output.keep_of(output));
+        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over(device);
+
+        let source = Source::of(&options.volume)?;
+        let scene_file = self.scene.path().map(Path::to_owned);
+        let mut inputs: Vec<PathBuf> = scene_file.into_iter().chain(transfer_file).collect();
+        inputs.extend(files_of(&source.path));
+        options.volume.volume = Some(FilePath(absolute(&source.path)));
+        options.volume.octree_leaf = Some(source.leaf.edge());
+        Ok(Job {
+            options,
+            output,
+            device,
+            source,
+            inputs,
+        })
+    }
+}

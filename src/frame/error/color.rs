@@ -1,0 +1,48 @@
+//! The colour's error.
+
+use serde::{Serialize, Serializer};
+
+use crate::error::{Error, Result};
+
+use super::pairing::displays;
+use super::spread::Spread;
+use crate::frame::Frame;
+
+/// Over the sRGB-encoded R, G and B of all pixels, in 0..1, before rounding to a file's levels:
+/// three differences a pixel, each of them one entry.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ColorError {
+    pub rmse: f64,
+    pub max: f64,
+    pub p99: f64,
+    /// −20 log₁₀ rmse: the peak is 1. +∞ for equal pictures; `null` in JSON, which has no infinity.
+    #[serde(serialize_with = "null_if_infinite")]
+    pub psnr_db: f64,
+}
+
+/// Compares the display planes.
+///
+/// # Errors
+/// Different sizes, a missing display plane, a channel that is not finite.
+pub fn color_error(reference: &Frame, frame: &Frame) -> Result<ColorError> {
+    let (left, right) = displays(reference, frame)?;
+    let mut differences = Vec::with_capacity(3 * left.len());
+    for (a, b) in left.iter().zip(right) {
+        for channel in 0..3 {
+            differences.push((f64::from(a[channel]) - f64::from(b[channel])).abs());
+        }
+    }
+    // A picture has at least one pixel.
+    let spread = Spread::of(&mut differences)
+        .ok_or_else(|| Error::failed("a picture without pixels has no error"))?;
+    Ok(ColorError {
+        rmse: spread.rmse,
+        max: spread.max,
+        p99: spread.p99,
+        psnr_db: -20.0 * spread.rmse.log10(),
+    })
+}
+
+fn null_if_infinite<S: Serializer>(figure: &f64, to: S) -> std::result::Result<S::Ok, S::Error> {
+    figure.is_finite().then_some(figure).serialize(to)
+}

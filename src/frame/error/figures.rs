@@ -1,0 +1,60 @@
+//! All figures of a pair of pictures at once.
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::frame::Frame;
+
+use super::{
+    ColorError, DepthError, NormalError, ValueError, color_error, depth_error, flip, normal_error,
+    ssim, value_error,
+};
+
+/// The units that depths and values are measured in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// The volume's smallest voxel spacing.
+    pub smallest_spacing_mm: f64,
+    /// The volume's largest minus its smallest value.
+    pub range_width: f64,
+}
+
+/// What can be said of a picture against its reference: each figure where both have the planes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Figures {
+    pub color: Option<ColorError>,
+    /// [`ssim()`]; `None` also where the picture is smaller than its window.
+    pub ssim: Option<f64>,
+    /// [`flip()`]; `None` also where the picture is larger than it takes.
+    pub flip: Option<f64>,
+    pub depth: Option<DepthError>,
+    pub normal: Option<NormalError>,
+    /// `None` also where all values of the volume are equal: no share of their range can be said.
+    pub value: Option<ValueError>,
+}
+
+/// Compares all planes that both pictures have. Which planes make sense for a picture is the
+/// caller's to say, by asking the renderers for those: a projection has depths too.
+///
+/// # Errors
+/// Different sizes; an entry that cannot be compared (those of [`color_error`] and its siblings).
+pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures> {
+    let shown = reference.display.is_some() && frame.display.is_some();
+    let deep = reference.depth.is_some() && frame.depth.is_some();
+    let oriented = reference.normal.is_some() && frame.normal.is_some();
+    let valued = reference.value.is_some() && frame.value.is_some() && scale.range_width != 0.0;
+    Ok(Figures {
+        color: shown.then(|| color_error(reference, frame)).transpose()?,
+        ssim: shown.then(|| ssim(reference, frame)).transpose()?.flatten(),
+        flip: shown.then(|| flip(reference, frame)).transpose()?.flatten(),
+        depth: deep
+            .then(|| depth_error(reference, frame, scale.smallest_spacing_mm))
+            .transpose()?,
+        normal: oriented
+            .then(|| normal_error(reference, frame))
+            .transpose()?,
+        value: valued
+            .then(|| value_error(reference, frame, scale.range_width))
+            .transpose()?,
+    })
+}

@@ -123,7 +123,10 @@ fn vessels_end_in_a_table_and_leave_it_as_files() {
     assert!(csv.contains(&format!(",{share},")), "{share}");
     let of = place.path("out/first");
     let files = std::fs::read_dir(of).unwrap().count();
-    assert_eq!(files, 2, "something temporary is left");
+    assert_eq!(files, 3, "something temporary is left");
+    let page = std::fs::read_to_string(place.path("out/first/report.html")).unwrap();
+    assert!(page.contains("angioray bench vessels ball.nrrd --quick"));
+    assert!(page.contains("step 0.5, regula-falsi:5, probe"));
 }
 
 #[test]

@@ -190,7 +190,7 @@ fn b17_counts_every_pixel_once_and_draws_them() {
     // Rays past the volume go through nothing.
     assert!(done.rows()[0]["clear_misses"].as_f64().unwrap() > 0.0);
     assert_eq!(done.rows()[0]["hits"], 0.0);
-    let map = image::open(done.place.path("out/iterations-of-tree.png"))
+    let map = image::open(done.place.path("out/tree-iterations.png"))
         .unwrap()
         .to_luma8();
     let (least, most) = (
@@ -209,7 +209,7 @@ fn b18_draws_four_pictures_of_one_volume_that_differ() {
     done.check_times();
     let names = ["walls", "interiors", "walls-and-interiors", "all-of-it"];
     let pictures = names.map(|name| {
-        let path = done.place.path(&format!("out/tree-{name}.png"));
+        let path = done.place.path(&format!("out/tree-dvr-{name}.png"));
         image::open(path).unwrap().to_rgb8()
     });
     for (at, picture) in pictures.iter().enumerate() {

@@ -10,6 +10,7 @@ pub mod convergence;
 mod effort;
 mod experiments;
 mod journal;
+mod page;
 mod protocol;
 mod results;
 mod specimen;
@@ -35,12 +36,14 @@ use crate::measure::{Times, interleaved};
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{Options, Renderer};
-use crate::report::Table;
+use crate::report::{Section, Table};
 use crate::scene::Scene;
 
 /// What an experiment is given to work with.
 pub struct Bench<'a> {
     pub experiment: &'static Experiment,
+    /// The line that runs it again.
+    pub command: String,
     pub device: &'a Device,
     pub options: Options,
     pub effort: Effort,
@@ -183,6 +186,8 @@ pub struct Outcome {
     pub table: Table,
     /// What the table shows, a sentence each.
     pub findings: Vec<String>,
+    /// Of the page, before its table: a volume or a picture each.
+    pub sections: Vec<Section>,
     pub pictures: Vec<Shot>,
     /// Why the experiment failed: what must hold does not.
     pub failure: Option<String>,
@@ -194,6 +199,7 @@ impl Outcome {
         Self {
             table,
             findings: Vec::new(),
+            sections: Vec::new(),
             pictures: Vec::new(),
             failure: None,
         }
@@ -202,12 +208,27 @@ impl Outcome {
 
 /// A picture that belongs to the findings.
 pub struct Shot {
-    /// Of its file, without the extension.
-    pub name: String,
+    /// The section of the page in which it is shown.
+    pub section: String,
+    /// What it is called there.
+    pub label: String,
     /// What is seen, a line.
     pub caption: String,
     /// With its display plane.
     pub frame: Frame,
+}
+
+impl Shot {
+    /// The name of its file.
+    pub fn file(&self) -> String {
+        let name = format!("{} {}", self.section, self.label);
+        let words = name.split(|c: char| !(c.is_alphanumeric() || c == '.'));
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+        words.join("-") + ".png"
+    }
+        };
+        name.chars().map(plain).collect::<String>() + ".png"
+    }
 }
 
 /// A measurement that anyone can repeat by its name.

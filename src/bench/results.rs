@@ -9,9 +9,10 @@ use crate::error::{Error, Result};
 use crate::frame::{self, Encoding, Format};
 use crate::output::{check_writable, write_atomically};
 
+use super::page::report;
 use super::{Bench, Outcome};
 
-/// `results.csv` and `results.json` in one folder, and pictures beside them.
+/// `results.csv` and `results.json` in one folder; in the end pictures and `report.html` beside them.
 pub struct Results {
     folder: PathBuf,
     csv: PathBuf,
@@ -72,10 +73,13 @@ impl Results {
         self.write(bench, outcome, true)?;
         let mut files = vec![self.csv.clone(), self.json.clone()];
         for picture in &outcome.pictures {
-            let path = self.folder.join(format!("{}.png", picture.name));
+            let path = self.folder.join(picture.file());
             frame::write(&path, &picture.frame, &Encoding::new(Format::Png), &[])?;
             files.push(path);
         }
+        let page = self.folder.join("report.html");
+        report(bench, outcome, &self.folder)?.write(&page)?;
+        files.push(page);
         Ok(files)
     }
 }

@@ -1,6 +1,7 @@
 //! The folder of a run: what it has found so far, and how it goes on after a stop.
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -20,6 +21,8 @@ pub struct Store {
     journal: RefCell<Journal>,
     /// Units measured before this process began.
     before: usize,
+    /// How often each key was asked for: two volumes may have one name.
+    asked: RefCell<HashMap<String, usize>>,
 }
 
 impl Store {
@@ -37,6 +40,7 @@ impl Store {
             results,
             before: journal.units(),
             journal: RefCell::new(journal),
+            asked: RefCell::default(),
         })
     }
 
@@ -50,6 +54,7 @@ impl Store {
         key: &str,
         compute: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
+        let key = &self.unique(key);
         if let Some(found) = self.journal.borrow().found(key)? {
             return Ok(found);
         }
@@ -57,6 +62,17 @@ impl Store {
         let found = compute()?;
         self.journal.borrow_mut().keep(key, &found)?;
         Ok(found)
+    }
+
+    /// The key, numbered where it has been asked for before: the work has an order.
+    fn unique(&self, key: &str) -> String {
+        let mut asked = self.asked.borrow_mut();
+        let times = asked.entry(key.to_owned()).or_default();
+        *times += 1;
+        match *times {
+            1 => key.to_owned(),
+            times => format!("{key} #{times}"),
+        }
     }
 
     /// # Errors

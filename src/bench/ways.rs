@@ -6,13 +6,13 @@ use std::cell::OnceCell;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::frame::error::{color_error, depth_error};
+use crate::frame::error::{color_error, depth_error, flip, ssim};
 use crate::frame::{Frame, Wanted};
-use crate::measure::{Counts, Times};
+use crate::measure::{Counts, Times, Tradeoff, front};
 use crate::octree::{Leaf, Octree};
 use crate::reference;
 use crate::render::Renderer;
-use crate::report::{Cell, Shown, Table};
+use crate::report::{Axis, Cell, Point, Scatter, Section, Shown, Table};
 use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene};
 use crate::volume::PhantomKind;
 
@@ -132,6 +132,8 @@ pub struct SurfaceFound {
 pub struct LightFound {
     pub rmse: f64,
     pub max: f64,
+    pub ssim: Option<f64>,
+    pub flip: Option<f64>,
 }
 
 /// Measures every way of a group: its error against the reference, its times in turn with the
@@ -241,6 +243,8 @@ impl<'a> Truths<'a> {
             let light = LightFound {
                 rmse: error.rmse,
                 max: error.max,
+                ssim: ssim(truth, frame)?,
+                flip: flip(truth, frame)?,
             };
             return Ok((None, Some(light)));
         }
@@ -292,6 +296,8 @@ pub fn table(case: &'static str, errors: Errors) -> Table {
         Errors::Light => [
             ("rmse", "colour rmse", Shown::Short),
             ("max", "colour max", Shown::Short),
+            ("ssim", "ssim", Shown::Fixed(4)),
+            ("flip", "flip", Shown::Fixed(4)),
         ]
         .as_slice(),
     });
@@ -341,7 +347,12 @@ pub fn tabulate(outcome: &mut Outcome, volume: &str, case: &str, group: &[Found]
             ]);
         }
         if let Some(light) = &found.light {
-            row.extend([light.rmse.into(), light.max.into()]);
+            row.extend([
+                light.rmse.into(),
+                light.max.into(),
+                light.ssim.into(),
+                light.flip.into(),
+            ]);
         }
         row.extend([
             found.samples.into(),
@@ -355,6 +366,57 @@ pub fn tabulate(outcome: &mut Outcome, volume: &str, case: &str, group: &[Found]
                 found.name
             ));
         }
+    }
+}
+
+/// A group's part of the page: its ways as time against error.
+fn section(volume: &str, case: &str, group: &[Found]) -> Section {
+    let error = |found: &Found| match (&found.surface, &found.light) {
+        (Some(surface), _) => surface.missed_share.map(|share| 100.0 * share),
+        (None, Some(light)) => Some(light.rmse),
+        (None, None) => None,
+    };
+    let judged: Vec<(&Found, f64)> = group
+        .iter()
+        .filter_map(|found| Some((found, error(found)?)))
+        .collect();
+    let tradeoffs: Vec<Tradeoff> = judged
+        .iter()
+        .map(|&(found, error)| Tradeoff {
+            time: found.times.median_ms(),
+            error,
+        })
+        .collect();
+    let points = judged.iter().zip(&tradeoffs).zip(front(&tradeoffs));
+    let points = points.map(|(((found, error), at), on_front)| Point {
+        label: found.name.clone(),
+        group: case.to_owned(),
+        x: at.time,
+        y: *error,
+        on_front,
+        details: vec![("samples a ray".into(), format!("{:.1}", found.samples))],
+    });
+    let is_surface = group.iter().any(|found| found.surface.is_some());
+    let (label, unit) = match is_surface {
+        true => ("missed hits", "%"),
+        false => ("colour rmse", ""),
+    };
+    Section {
+        title: format!("{volume}, {case}"),
+        scatters: vec![Scatter {
+            title: format!("time against {label}"),
+            x: axis("time", "ms"),
+            y: axis(label, unit),
+            points: points.collect(),
+        }],
+        ..Section::default()
+    }
+}
+
+fn axis(label: &str, unit: &str) -> Axis {
+    Axis {
+        label: label.into(),
+        unit: unit.into(),
     }
 }
 
@@ -445,6 +507,7 @@ pub fn run_group(
         measure(bench, bench.protocol(), specimen, &ways(specimen)?)
     })?;
     tabulate(outcome, &subject.name, case, &found);
+    outcome.sections.push(section(&subject.name, case, &found));
     bench.so_far(outcome)?;
     Ok(found)
 }

@@ -15,6 +15,7 @@ use crate::scene::{FilePath, Switch, Threshold, VolumeOptions};
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
 use super::progress::Bars;
+use super::repeat::command_line;
 use super::scene::SceneArgument;
 use super::terminal::{message, note, to_stdout};
 
@@ -65,9 +66,9 @@ group! {
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         rays: u64,
 
-        /// A folder for the table as results.csv and results.json, unrounded, and for pictures; made
-        /// where there is none. It fills as the work goes on: the same command goes on where it was
-        /// stopped
+        /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
+        /// pictures; made where there is none. It fills as the work goes on: the same command goes
+        /// on where it was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
@@ -160,20 +161,27 @@ impl BenchArguments {
         };
 
         let bars = Bars::new();
-        let specimens = volumes.iter().map(|FilePath(path)| {
-            let specimen = specimen(path, options.iso, &bars)?;
+        let mut specimens: Vec<Specimen> = Vec::new();
+        for FilePath(path) in &volumes {
+            let mut specimen = specimen(path, options.iso, &bars)?;
             specimen.check()?;
-            Ok(specimen)
-        });
+            let alike = |other: &&Specimen| other.name.split(" (").next() == Some(&specimen.name);
+            let alike = specimens.iter().filter(alike).count();
+            if alike > 0 {
+                specimen.name = format!("{} ({})", specimen.name, alike + 1);
+            }
+            specimens.push(specimen);
+        }
         let mut bench = Bench {
             experiment,
+            command: command_line(),
             device: &device,
             options: Options {
                 work_group: work_group.map(Into::into),
             },
             effort,
             protocol: options.protocol,
-            specimens: specimens.collect::<Result<_>>()?,
+            specimens,
             rays: options.rays,
             progress: &bars,
             store: None,

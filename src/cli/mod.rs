@@ -12,6 +12,7 @@ mod percentiles;
 mod phantom;
 mod progress;
 mod render;
+mod repeat;
 mod scene;
 mod stats;
 mod terminal;

@@ -163,8 +163,9 @@ fn map(volume: &str, mut frame: Frame) -> Shot {
     };
     frame.display = Some(nodes.iter().map(grey).collect());
     Shot {
-        name: format!("iterations of {volume}").replace(' ', "-"),
-        caption: format!("{volume}: traversal iterations a ray, white none, black {most}"),
+        section: volume.to_owned(),
+        label: "iterations".into(),
+        caption: format!("traversal iterations a ray, white none, black {most}"),
         frame,
     }
 }

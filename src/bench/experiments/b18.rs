@@ -98,10 +98,12 @@ fn pictures(bench: &Bench, specimen: &Specimen) -> Result<Vec<Shot>> {
         ..Wanted::default()
     };
     let shots = list(bench, specimen)?.into_iter().map(|way| {
+        let frame = renderer.render(&way.scene, wanted)?.frame;
         Ok(Shot {
-            name: format!("{} {}", specimen.name, way.name).replace(' ', "-"),
-            caption: format!("{}: {}", specimen.name, way.name),
-            frame: renderer.render(&way.scene, wanted)?.frame,
+            section: format!("{}, dvr", specimen.name),
+            label: way.name,
+            caption: String::new(),
+            frame,
         })
     });
     shots.collect()

@@ -1,5 +1,7 @@
 //! What fixed steps lose of thin vessels and of real angiograms, and what exact casting costs.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::borderline::Borderline;
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
@@ -113,6 +115,7 @@ impl Setting {
 }
 
 /// One volume's figures.
+#[derive(Serialize, Deserialize)]
 struct Measured {
     /// In the order of [`Setting::all`].
     iso: Vec<(DepthError, Times)>,
@@ -128,7 +131,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
     let mut costs = Costs::default();
     for specimen in vessels.iter().chain(&bench.specimens) {
-        let measured = measure(bench, specimen)?;
+        let measured = bench.unit(&specimen.name, || measure(bench, specimen))?;
         let exact = &tabulate(&mut outcome.table, specimen, &measured);
         costs.add(&measured);
         outcome.findings.push(format!(
@@ -144,6 +147,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 specimen.name, exact.missed, exact.extra
             ));
         }
+        bench.so_far(&outcome)?;
     }
     outcome.findings.extend(costs.findings());
     outcome.findings.push(bench.timed());

@@ -226,9 +226,6 @@ impl Shot {
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
         words.join("-") + ".png"
     }
-        };
-        name.chars().map(plain).collect::<String>() + ".png"
-    }
 }
 
 /// A measurement that anyone can repeat by its name.

@@ -21,6 +21,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod stop;
+pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};

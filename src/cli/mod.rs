@@ -17,6 +17,7 @@ mod repeat;
 mod scene;
 mod stats;
 mod terminal;
+mod tolerance;
 
 use std::process::ExitCode;
 

@@ -12,6 +12,8 @@ use crate::output::write_atomically;
 use crate::scene::SceneOptions;
 use crate::volume::Volume;
 
+use super::tolerance::ToleranceStats;
+
 /// Of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -29,6 +31,9 @@ pub struct Stats<'a> {
     pub passes: Vec<PassStats>,
     pub counts: Counts,
     pub memory: Memory,
+    /// Where an error bound decided how rays are followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_error: Option<ToleranceStats>,
 }
 
 #[derive(Serialize)]

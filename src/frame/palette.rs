@@ -32,11 +32,6 @@ pub fn cool_warm(t: f64) -> Rgb {
     )
 }
 
-/// `#rrggbb`, as CSS and SVG write a colour.
-pub fn hex([r, g, b]: Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 /// The hue at which a branch reaches the grey: turned so that its steps are as uniform as they can
 /// be although the lightness grows (AdjustHue in the paper), away from purple.
 fn hue_near_grey(end_hue: f64) -> f64 {
@@ -152,11 +147,5 @@ mod tests {
         ] {
             assert_eq!(cool_warm(t), expected, "{t}");
         }
-    }
-
-    #[test]
-    fn colours_in_hexadecimal() {
-        assert_eq!(hex([59, 76, 192]), "#3b4cc0");
-        assert_eq!(hex([0, 5, 255]), "#0005ff");
     }
 }

@@ -78,10 +78,10 @@ impl ErrorMap {
         })
     }
 
-    /// The palette for a colour bar: where along it, 0 to 1, and the colour as CSS and SVG write
-    /// it. 0 stands for −[`Self::scale`], or for 0 where differences have no sign, 1 for
-    /// +[`Self::scale`]. What browsers interpolate between stops is within 2.5 of 255 levels.
-    pub fn palette_stops(&self) -> Vec<(f64, String)> {
+    /// The palette for a colour bar: where along it, 0 to 1, and the colour. 0 stands for
+    /// −[`Self::scale`], or for 0 where differences have no sign, 1 for +[`Self::scale`]. What
+    /// browsers interpolate between stops is within 2.5 of 255 levels.
+    pub fn palette_stops(&self) -> Vec<(f64, Rgb)> {
         const STEPS: usize = 64;
         (0..=STEPS)
             .map(|k| {
@@ -91,7 +91,7 @@ impl ErrorMap {
                 } else {
                     position
                 };
-                (position, palette::hex(palette::cool_warm(share)))
+                (position, palette::cool_warm(share))
             })
             .collect()
     }

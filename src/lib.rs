@@ -6,6 +6,7 @@
 
 pub mod bench;
 pub mod cli;
+pub mod compare;
 pub mod error;
 pub mod extent;
 pub mod frame;
@@ -20,6 +21,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod stop;
+pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};

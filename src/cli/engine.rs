@@ -205,14 +205,9 @@ impl Caster<'_> {
                 progress.begin("rendering", UNKNOWN_TOTAL);
                 let rendering = renderer.render(scene, wanted)?;
                 progress.end();
-                let info = device.info();
                 Ok(Rendered {
                     frame: rendering.frame,
-                    device: DeviceStats {
-                        name: info.name.clone(),
-                        platform: info.platform.clone(),
-                        driver: info.driver.clone(),
-                    },
+                    device: device.info().into(),
                     times_ms: Times {
                         octree: *octree_ms,
                         classify: rendering.classify_ms,

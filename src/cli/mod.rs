@@ -1,6 +1,7 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod bench;
+mod compare;
 mod devices;
 mod engine;
 mod hardcase;
@@ -12,9 +13,11 @@ mod percentiles;
 mod phantom;
 mod progress;
 mod render;
+mod repeat;
 mod scene;
 mod stats;
 mod terminal;
+mod tolerance;
 
 use std::process::ExitCode;
 
@@ -42,6 +45,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Compare(Box<compare::CompareArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
@@ -52,6 +56,7 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Compare(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),

@@ -6,10 +6,16 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::gpu::DeviceInfo;
 use crate::measure::Counts;
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
 use crate::volume::Volume;
+
+use super::tolerance::ToleranceStats;
+
+/// Of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 #[derive(Serialize)]
 pub struct Stats<'a> {
@@ -25,6 +31,9 @@ pub struct Stats<'a> {
     pub passes: Vec<PassStats>,
     pub counts: Counts,
     pub memory: Memory,
+    /// Where an error bound decided how rays are followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_error: Option<ToleranceStats>,
 }
 
 #[derive(Serialize)]
@@ -63,6 +72,16 @@ pub struct DeviceStats {
     pub name: String,
     pub platform: String,
     pub driver: String,
+}
+
+impl From<&DeviceInfo> for DeviceStats {
+    fn from(info: &DeviceInfo) -> Self {
+        Self {
+            name: info.name.clone(),
+            platform: info.platform.clone(),
+            driver: info.driver.clone(),
+        }
+    }
 }
 
 #[derive(Serialize, Default)]

@@ -4,8 +4,10 @@
 //! [`render`] casts it on an OpenCL device, [`mod@reference`] in double precision on the host; both
 //! give a [`frame::Frame`], which is written as a picture. ARCHITECTURE.md draws the whole.
 
+pub mod batch;
 pub mod bench;
 pub mod cli;
+pub mod compare;
 pub mod error;
 pub mod extent;
 pub mod frame;
@@ -20,6 +22,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod stop;
+pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};

@@ -6,13 +6,16 @@
 
 mod common;
 
+use angioray::bench::{self, Met, Verdict};
 use angioray::extent::Dims;
 use angioray::frame::error::{depth_error, value_error};
-use angioray::frame::{Certificate, Frame, Wanted};
+use angioray::frame::{Certificate, Frame, Kind, Wanted};
 use angioray::progress::Silent;
-use angioray::reference::{self, Sight};
+use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Filter, Picture, Projection, Refine, Rgb, SamplingMethod, Scene, Window};
+use angioray::scene::{
+    Filter, Picture, Projection, Ray, Refine, Rgb, SamplingMethod, Scene, Window,
+};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use common::{hash, volume_of};
 use glam::DQuat;
@@ -25,8 +28,6 @@ const DEPTH_P999_VOXELS: f64 = 1e-3;
 const VALUE_MAX: f64 = 2e-6;
 /// Pixels of which nothing is proven, as a share of all, on real data.
 const UNDECIDED: f64 = 1e-4;
-/// A hit that only one of both has is excused where the ray is within this of being tangent.
-const TANGENT_VOXELS: f64 = 1e-4;
 
 /// Pixels of lmip that may differ: there a ray's first local maximum is followed by a dip of less
 /// than a millionth of its cell's spread in slope, which single precision cannot tell from none.
@@ -67,7 +68,8 @@ impl Judge<'_> {
         (truth, frame)
     }
 
-    fn surface(&mut self, iso: f64, caps: bool, method: SamplingMethod) -> Wrong {
+    /// The scene of a surface, the reference's picture of it and the device's.
+    fn surface(&mut self, iso: f64, caps: bool, method: SamplingMethod) -> (Scene, Frame, Frame) {
         let picture = Picture::Surface {
             iso,
             caps,
@@ -76,18 +78,16 @@ impl Judge<'_> {
             phong: None,
         };
         let scene = self.scene(picture, method);
-        let (truth, mut frame) = self.both(&scene);
-        let certificates = frame.certificate.clone().unwrap();
-        let disproven = certificates
-            .iter()
-            .zip(truth.certificate.as_ref().unwrap())
-            .filter(|&(&own, &true_one)| own != Certificate::Undecided as u32 && own != true_one)
-            .count();
+        let (truth, frame) = self.both(&scene);
+        (scene, truth, frame)
+    }
+
+    fn wrong(&mut self, iso: f64, caps: bool) -> Wrong {
+        let (scene, truth, mut frame) = self.surface(iso, caps, SamplingMethod::Exact);
+        let disproven = disproven(&truth, &frame);
         let undecided = frame.undecided().unwrap() as f64 / frame.size.pixels() as f64;
+        self.excuse_borderline(&scene, &truth, &mut frame);
         let voxel_mm = self.volume.geometry().smallest_spacing_mm();
-        let truths = truth.depth.as_ref().unwrap();
-        let own = frame.depth.as_mut().unwrap();
-        self.excuse(&scene, truths, own, |sight| sight.depth_mm, 1e-4 * voxel_mm);
         let error = depth_error(&truth, &frame, voxel_mm).unwrap();
         let depths = truth
             .depth
@@ -110,39 +110,49 @@ impl Judge<'_> {
         }
     }
 
-    /// Gives pixels that differ the reference's answer where the reference itself gives theirs for a
-    /// ray no farther away than [`TANGENT_VOXELS`]: which side of a tangent a ray is on, and whether
-    /// it dips between two maxima, no finite precision decides.
-    fn excuse(
-        &self,
-        scene: &Scene,
-        truths: &[f32],
-        own: &mut [f32],
-        of: fn(Sight) -> f64,
-        close_by: f64,
-    ) {
-        let voxel_mm = self.volume.geometry().smallest_spacing_mm();
-        let tracer = reference::Tracer::new(self.volume, scene).unwrap();
-        let close = |a: f32, b: f32| a == b || f64::from((a - b).abs()) <= close_by;
-        for (pixel, (own, &truth)) in own.iter_mut().zip(truths).enumerate() {
-            if close(*own, truth) {
+    /// Gives hits that differ and are [`Verdict::Borderline`] the reference's depth.
+    fn excuse_borderline(&self, scene: &Scene, truth: &Frame, frame: &mut Frame) {
+        let judge = bench::Judge::new(self.volume, scene).unwrap();
+        let close_mm = 1e-4 * self.volume.geometry().smallest_spacing_mm();
+        let kinds = frame.kind.as_ref().unwrap();
+        let depths = frame.depth.as_mut().unwrap();
+        for (pixel, &true_mm) in truth.depth.as_ref().unwrap().iter().enumerate() {
+            let depth_mm = depths[pixel];
+            if true_mm == depth_mm || f64::from((true_mm - depth_mm).abs()) <= close_mm {
                 continue;
             }
-            let (x, y) = (pixel as u32 % SIZE_PX, pixel as u32 / SIZE_PX);
-            let ray = scene
-                .camera
-                .ray(scene.size, f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let met = Met {
+                kind: [Kind::Nothing, Kind::Surface, Kind::Cap, Kind::Geometry]
+                    [kinds[pixel] as usize],
+                depth_mm: depth_mm.into(),
+            };
+            let ray = ray(scene, pixel);
+            if judge.verdict(ray, judge.truth(ray), met, 0.0) == Verdict::Borderline {
+                depths[pixel] = true_mm;
+            }
+        }
+    }
+
+    /// Gives pixels of local maxima that differ the reference's value where the reference itself
+    /// gives theirs for a ray no farther away than [`bench::Judge::NEAR_VOXELS`]: whether a ray dips
+    /// between two maxima, no finite precision decides.
+    fn excuse_dips(&self, scene: &Scene, truths: &[f32], own: &mut [f32], close: f64) {
+        let near_mm = bench::Judge::NEAR_VOXELS * self.volume.geometry().smallest_spacing_mm();
+        let tracer = reference::Tracer::new(self.volume, scene).unwrap();
+        for (pixel, (own, &truth)) in own.iter_mut().zip(truths).enumerate() {
+            if f64::from((*own - truth).abs()) <= close {
+                continue;
+            }
+            let ray = ray(scene, pixel);
             let side = ray.dir_world.any_orthonormal_vector();
             let excused = (0..8).any(|k| {
                 let turn = DQuat::from_axis_angle(ray.dir_world, f64::from(k) * 0.785);
                 let mut beside = ray;
-                beside.origin_world += (turn * side) * (TANGENT_VOXELS * voxel_mm);
-                let moved = of(tracer.cast(beside)) as f32;
+                beside.origin_world += (turn * side) * near_mm;
+                let moved = tracer.cast(beside).value as f32;
                 // Theirs rather than its own.
                 let theirs = (moved - *own).abs();
-                moved == *own
-                    || (truth.is_finite() && theirs < 0.25 * (truth - *own).abs())
-                    || f64::from(theirs) <= 100.0 * close_by
+                theirs < 0.25 * (truth - *own).abs() || f64::from(theirs) <= 100.0 * close
             });
             if excused {
                 *own = truth;
@@ -161,7 +171,7 @@ impl Judge<'_> {
             let truths = truth.value.as_ref().unwrap();
             let own = frame.value.as_mut().unwrap();
             let close = VALUE_MAX * range.width();
-            self.excuse(&scene, truths, own, |sight| sight.value, close);
+            self.excuse_dips(&scene, truths, own, close);
             let wrong = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > close;
             let pixels = truths
                 .iter()
@@ -177,6 +187,21 @@ impl Judge<'_> {
         assert_eq!((error.missed, error.extra), (0, 0));
         error.max.unwrap()
     }
+}
+
+fn ray(scene: &Scene, pixel: usize) -> Ray {
+    let width = scene.size.width() as usize;
+    let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
+    scene.camera.ray(scene.size, x, y)
+}
+
+/// Pixels whose certificate says what is not so.
+fn disproven(truth: &Frame, frame: &Frame) -> usize {
+    let certificates = frame.certificate.iter().flatten();
+    certificates
+        .zip(truth.certificate.iter().flatten())
+        .filter(|&(&own, &true_one)| own != Certificate::Undecided as u32 && own != true_one)
+        .count()
 }
 
 /// Judges surfaces (with and without caps) and projections, prints rows, keeps the limits.
@@ -199,7 +224,7 @@ fn judge(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcom
     ];
     let mut undecided: f64 = 0.0;
     for caps in [true, false] {
-        let exact = judge.surface(iso, caps, SamplingMethod::Exact);
+        let exact = judge.wrong(iso, caps);
         println!(
             "| {name}, caps {caps} | {} | {} | {:.1e} | {:.1e} | {:.1e} |",
             exact.missed, exact.extra, exact.p999, exact.max, exact.undecided
@@ -209,8 +234,13 @@ fn judge(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcom
         undecided = undecided.max(exact.undecided);
         assert!(exact.p999 <= DEPTH_P999_VOXELS, "{name}: {exact:?}");
     }
-    let fixed = judge.surface(iso, true, SamplingMethod::Fixed);
-    assert!(fixed.undecided == 1.0, "{name}: fixed steps prove nothing");
+    let (_, _, fixed) = judge.surface(iso, true, SamplingMethod::Fixed);
+    let pixels = fixed.size.pixels() as u64;
+    assert_eq!(
+        fixed.undecided(),
+        Some(pixels),
+        "{name}: fixed steps prove nothing"
+    );
     let errors = projections.map(|of| judge.projection(of, SamplingMethod::Exact));
     let [mip, minip, mean, lmip] = errors;
     println!("| {name} | mip {mip:.1e} | minip {minip:.1e} | mean {mean:.1e} | lmip {lmip:.1e} |");
@@ -284,10 +314,10 @@ fn an_iso_value_between_two_floats() {
         renderer,
         filter: Filter::Linear,
     };
-    let wrong = judge.surface(2.0 + 1e-9, true, SamplingMethod::Exact);
+    let (_, truth, frame) = judge.surface(2.0 + 1e-9, true, SamplingMethod::Exact);
     // Rounded, it is hit where the other is not; nothing of that is called proven.
-    assert!(wrong.extra > 0, "{wrong:?}");
-    assert_eq!(wrong.disproven, 0, "{wrong:?}");
+    assert!(depth_error(&truth, &frame, 1.0).unwrap().extra > 0);
+    assert_eq!(disproven(&truth, &frame), 0);
 }
 
 #[test]

@@ -115,16 +115,6 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Whether a hair decides the `truth` of a ray: moved by [`Judge::NEAR_VOXELS`] it meets something
-    /// else, or more than a voxel away.
-    pub fn hangs_by_a_hair(&self, ray: Ray, truth: Met) -> bool {
-        let voxel = self.voxel_mm / ray.dir_world.length();
-        self.moves(ray).any(|by| {
-            let near = self.seen(ray, Off { by, iso: 0.0 });
-            apart(near, truth, voxel).is_none_or(|apart| apart > 1.0)
-        })
-    }
-
     /// Whether the reference answers like `met`, to within `most` voxels, for a ray and an iso value
     /// so near that they are no others.
     fn is_borderline(&self, ray: Ray, truth: Met, met: Met, most: f64, touches: u32) -> bool {

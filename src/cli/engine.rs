@@ -205,20 +205,16 @@ impl Caster<'_> {
                 progress.begin("rendering", UNKNOWN_TOTAL);
                 let rendering = renderer.render(scene, wanted)?;
                 progress.end();
-                let info = device.info();
                 Ok(Rendered {
                     frame: rendering.frame,
-                    device: DeviceStats {
-                        name: info.name.clone(),
-                        platform: info.platform.clone(),
-                        driver: info.driver.clone(),
-                    },
+                    device: device.info().into(),
                     times_ms: Times {
                         octree: *octree_ms,
                         classify: rendering.classify_ms,
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,
                         render: rendering.render_ms,
+                        read_back: rendering.read_back_ms,
                         gradient: rendering.gradients.map_or(0.0, |figures| figures.ms),
                         ..Times::default()
                     },

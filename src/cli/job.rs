@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::scene::{FilePath, SceneFile, SceneOptions, TransferChoice};
+use crate::scene::{
+    ErrorBound, FilePath, SceneFile, SceneOptions, ToleranceOptions, TransferChoice,
+};
 use crate::volume::files_of;
 
 use super::engine::DeviceOptions;
@@ -15,6 +17,9 @@ use super::scene::SceneArgument;
 pub struct JobArguments {
     #[command(flatten)]
     options: SceneOptions,
+
+    #[command(flatten)]
+    tolerance: ToleranceOptions,
 
     #[command(flatten)]
     scene: SceneArgument,
@@ -31,6 +36,8 @@ pub struct Job {
     /// The scene that is stored renders the same volume from wherever it is read, in the same way:
     /// its volume's path is absolute and its octree's leaf is given.
     pub options: SceneOptions,
+    /// Decides how rays are followed, where there is one.
+    pub bound: Option<ErrorBound>,
     pub output: OutputOptions,
     pub device: DeviceOptions,
     pub source: Source,
@@ -45,11 +52,15 @@ impl JobArguments {
     }
 
     /// # Errors
-    /// Options that contradict each other, a transfer function that cannot be read, no volume.
+    /// Options that contradict each other or an error bound, a transfer function that cannot be read, no volume.
     pub fn over(self, file: &SceneFile) -> Result<Job> {
-        let options = self.options.over(SceneOptions::of_file(file)?);
+        let mut of_file = SceneOptions::of_file(file)?;
+        let tolerance = self.tolerance;
+        let tolerance = tolerance.over_file(file.group()?, &self.options, &mut of_file);
+        let options = self.options.over(of_file);
         let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
         let mut options = options.checked()?;
+        tolerance.check(&options)?;
         let output = OutputOptions::of_file(file)?;
         let output = self.output.clone().over(self.output.keep_of(output));
         let device = self.device.keep_of(file.group()?);
@@ -63,6 +74,7 @@ impl JobArguments {
         options.volume.octree_leaf = Some(source.leaf.edge());
         Ok(Job {
             options,
+            bound: tolerance.max_error,
             output,
             device,
             source,

@@ -1,12 +1,14 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod bench;
+mod compare;
 mod devices;
 mod engine;
 mod hardcase;
 mod info;
 mod job;
 mod load;
+mod orbit;
 mod outputs;
 mod percentiles;
 mod phantom;
@@ -16,6 +18,7 @@ mod repeat;
 mod scene;
 mod stats;
 mod terminal;
+mod tolerance;
 
 use std::process::ExitCode;
 
@@ -43,6 +46,8 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Orbit(Box<orbit::OrbitArguments>),
+    Compare(Box<compare::CompareArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
@@ -53,6 +58,8 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Orbit(arguments) => arguments.run(),
+            Self::Compare(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),

@@ -6,15 +6,19 @@ use crate::error::Result;
 use crate::frame::{self, Wanted};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
+use crate::scene::{ErrorBound, SceneOptions};
+use crate::tolerance::{self, Choice, Cost, Task};
 
-use super::engine::Engine;
+use super::engine::{Caster, Engine};
 use super::job::JobArguments;
-use super::load::ms_since;
+use super::load::{Loaded, ms_since};
 use super::progress::Bars;
-use super::stats::{Memory, Stats, Times, VolumeStats};
+use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
+use super::tolerance::{ToleranceStats, note_of};
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Of the random tiles of `--max-error`: the same in every run.
+const SEED: u64 = 1;
 
 /// Render a volume to a picture
 #[derive(clap::Args)]
@@ -23,6 +27,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
   angioray render head.nrrd -o head.png
   angioray render head.nrrd -o head.png --mode mip --view left --zoom 1.5
   angioray render cta.nii.gz -o cta.png --mode dvr --tf cta --shading phong --carm 'LAO 30 CRA 20'
+  angioray render head.nrrd -o head.png --mode mip --max-error rmse:0.002
   angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference")]
 pub struct RenderArguments {
     #[command(flatten)]
@@ -39,13 +44,21 @@ impl RenderArguments {
 
         let bars = Bars::new();
         let loaded = job.source.load(&bars)?;
-        let resolved = job.options.resolve(&loaded.subject)?;
+        let mut resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         files.encoding.check_size(resolved.scene.size)?;
 
         let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
         let prepared = engine.prepare(&loaded.volume, &job.source, &bars)?;
         let mut caster = engine.caster(&loaded.volume, &prepared)?;
+        let choice = match job.bound {
+            Some(bound) => choose(bound, &job.options, &loaded, wanted, &mut caster, &bars)?,
+            None => None,
+        };
+        if let Some(choice) = &choice {
+            note(note_of(choice));
+            resolved = choice.resolved.clone();
+        }
         let rendered = caster.render(&resolved.scene, wanted, &bars)?;
 
         if let Some(figures) = &rendered.gradients {
@@ -55,10 +68,15 @@ impl RenderArguments {
         let scene_text = resolved.options.to_toml()?;
         let metadata = [("scene", scene_text.as_str()), ("version", VERSION)];
         frame::write(&files.picture, &rendered.frame, &files.encoding, &metadata)?;
+        let chosen = choice
+            .as_ref()
+            .map_or(Cost::default(), |choice| choice.cost);
         let times_ms = Times {
             read: loaded.read_ms,
             smooth: loaded.smooth_ms,
             encode: ms_since(began),
+            build: rendered.times_ms.build + chosen.build_ms,
+            upload: rendered.times_ms.upload + chosen.upload_ms,
             ..rendered.times_ms
         };
         message(format_args!(
@@ -92,15 +110,43 @@ impl RenderArguments {
             memory: Memory::now(
                 rendered.device_bytes,
                 rendered.gradients.map_or(0, |figures| figures.bytes),
-                rendered.uploaded_bytes,
+                rendered.uploaded_bytes + chosen.uploaded_bytes,
             ),
+            max_error: choice.as_ref().map(ToleranceStats::of),
         };
-        stats.write(path)
+        stats::write(&stats, path)
     }
 }
 
+/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
+/// what all errors are taken against: it needs no choice, whatever the bound.
+fn choose(
+    bound: ErrorBound,
+    options: &SceneOptions,
+    loaded: &Loaded,
+    wanted: Wanted,
+    caster: &mut Caster,
+    bars: &Bars,
+) -> Result<Option<Choice>> {
+    let Caster::Device { renderer, .. } = caster else {
+        note(format_args!(
+            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+        ));
+        return Ok(None);
+    };
+    let task = Task {
+        volume: &loaded.volume,
+        subject: &loaded.subject,
+        options,
+        bound,
+        wanted,
+        seed: SEED,
+    };
+    tolerance::choose(&task, renderer, bars).map(Some)
+}
+
 /// What precomputed gradients cost and are worth.
-fn gradient_note(figures: &GradientFigures) -> String {
+pub fn gradient_note(figures: &GradientFigures) -> String {
     let megabytes = figures.bytes as f64 / 1e6;
     let angle = match figures.angle {
         Some(angle) => format!(

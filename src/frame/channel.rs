@@ -23,7 +23,15 @@ enum Samples<'a> {
     One,
 }
 
-impl Channel<'_> {
+impl<'a> Channel<'a> {
+    /// A plane of one number a pixel.
+    pub fn scalar(name: &'static str, plane: &'a [f32]) -> Self {
+        Self {
+            name,
+            samples: Samples::Scalar(plane),
+        }
+    }
+
     /// The sample of a pixel, counted from the top left, rows first; `pixel` < the frame's pixels.
     pub fn at(&self, pixel: usize) -> f32 {
         match self.samples {

@@ -6,6 +6,7 @@ use std::path::Path;
 use ::png::{ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderingIntent};
 
 use crate::error::{Error, Result};
+use crate::extent::ImageSize;
 
 use super::{BitDepth, Frame, quantize};
 
@@ -20,23 +21,41 @@ pub(super) fn encode(
         BitDepth::Eight => (::png::BitDepth::Eight, quantize::rgb8(frame)?),
         BitDepth::Sixteen => (::png::BitDepth::Sixteen, quantize::rgb16_big_endian(frame)?),
     };
-    let run = || -> std::result::Result<(), EncodingError> {
-        let mut encoder = Encoder::new(out, frame.size.width(), frame.size.height());
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(depth);
-        encoder.set_compression(Compression::Fast);
-        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-        for (key, text) in metadata {
-            encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned())?;
-        }
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&bytes)?;
-        writer.finish()
-    };
-    run().map_err(|error| match error {
+    let written = write_rgb(out, frame.size, depth, Compression::Fast, metadata, &bytes);
+    written.map_err(|error| match error {
         EncodingError::IoError(cause) => Error::io(path, "write", &cause),
         other => Error::failed(format!("{}: cannot write: {other}", path.display())),
     })
+}
+
+/// A whole file of 8 bits a channel; `rgb` holds R, G, B of each pixel of `size`.
+pub(super) fn rgb8(size: ImageSize, rgb: &[u8]) -> Result<Vec<u8>> {
+    let mut file = Vec::new();
+    let (depth, compression) = (::png::BitDepth::Eight, Compression::Balanced);
+    write_rgb(&mut file, size, depth, compression, &[], rgb)
+        .map_err(|cause| Error::failed(format!("the picture cannot be made a PNG: {cause}")))?;
+    Ok(file)
+}
+
+fn write_rgb(
+    out: &mut impl Write,
+    size: ImageSize,
+    depth: ::png::BitDepth,
+    compression: Compression,
+    metadata: &[(&str, &str)],
+    bytes: &[u8],
+) -> std::result::Result<(), EncodingError> {
+    let mut encoder = Encoder::new(out, size.width(), size.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(depth);
+    encoder.set_compression(compression);
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    for (key, text) in metadata {
+        encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()
 }
 
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.

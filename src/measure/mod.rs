@@ -2,15 +2,21 @@
 //! its rivals; and a rival that is another program.
 
 mod counts;
+mod family;
 mod interleaved;
+mod judged;
 mod pareto;
 mod peer;
 mod settings;
 mod truth;
+mod wrongness;
 
 pub use counts::Counts;
+pub use family::family;
 pub use interleaved::{Times, interleaved, rounds};
+pub use judged::{FrameTime, Judged, judge, judged_planes, scale_of, time};
 pub use pareto::{TIME_NOISE, Tradeoff, front};
 pub use peer::{Peer, PeerFrame, PeerScene, PeerTime, Readiness};
 pub use settings::{built_in, grid};
 pub use truth::{TrueFrame, Truth};
+pub use wrongness::Wrongness;

@@ -11,4 +11,5 @@ mod table;
 pub use content::{
     Axis, Bar, Bars, ErrorMap, Gallery, Mark, Picture, Point, Report, Scale, Scatter, Section,
 };
+pub use figure::figure;
 pub use table::{Cell, Column, Shown, Table};

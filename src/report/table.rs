@@ -166,6 +166,20 @@ impl Table {
         text
     }
 
+    /// A row for reading: each column's title and what the row has there; without what it has not.
+    pub fn named(&self, row: usize) -> Vec<(String, String)> {
+        let cells = self.columns.iter().zip(&self.rows[row]);
+        let named = cells.filter_map(|(column, cell)| {
+            let text = match cell {
+                Cell::Text(text) => text.clone(),
+                Cell::Number(number) => column.shown.text(*number),
+                Cell::Nothing => return None,
+            };
+            Some((column.title.to_owned(), text))
+        });
+        named.collect()
+    }
+
     /// For a page, about `what`; rounded like [`Self::markdown`], with the unrounded figures to sort
     /// by and, as CSV, to take along.
     pub(super) fn html(&self, what: &str) -> Markup {

@@ -4,6 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::error::{Error, Result};
 
+use super::entry::Entry;
 use super::pairing::displays;
 use super::spread::Spread;
 use crate::frame::Frame;
@@ -41,6 +42,16 @@ pub fn color_error(reference: &Frame, frame: &Frame) -> Result<ColorError> {
         p99: spread.p99,
         psnr_db: -20.0 * spread.rmse.log10(),
     })
+}
+
+/// The mean of the three channels' differences: how much brighter the picture is.
+pub(super) fn color_entries(reference: &Frame, frame: &Frame) -> Result<Vec<Entry>> {
+    let (left, right) = displays(reference, frame)?;
+    let brighter = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let sum: f64 = (0..3).map(|c| f64::from(b[c]) - f64::from(a[c])).sum();
+        Entry::Difference(sum / 3.0)
+    };
+    Ok(left.iter().zip(right).map(brighter).collect())
 }
 
 fn null_if_infinite<S: Serializer>(figure: &f64, to: S) -> std::result::Result<S::Ok, S::Error> {

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use crate::error::Result;
 
+use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite, positive};
-use super::spread::Spread;
 use crate::frame::Frame;
 
 /// Hits are pixels of finite depth. `mean`, `p99` and `max` are of the absolute difference over
@@ -75,35 +75,39 @@ pub fn depth_error(
     frame: &Frame,
     smallest_spacing_mm: f64,
 ) -> Result<DepthError> {
+    let tally = Tally::of(&depth_entries(reference, frame, smallest_spacing_mm)?);
+    Ok(DepthError {
+        reference_hits: tally.compared + tally.missed,
+        missed: tally.missed,
+        extra: tally.extra,
+        compared: tally.compared,
+        mean: tally.spread.map(|s| s.mean),
+        p99: tally.spread.map(|s| s.p99),
+        max: tally.spread.map(|s| s.max),
+    })
+}
+
+/// How much farther the picture's surface is, in voxels.
+pub(super) fn depth_entries(
+    reference: &Frame,
+    frame: &Frame,
+    smallest_spacing_mm: f64,
+) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
     let unit = positive(smallest_spacing_mm, "voxel spacing")?;
     let (left, right) = both(reference, frame, "depth", |f| f.depth.as_deref())?;
-    let mut differences = Vec::new();
-    let (mut missed, mut extra) = (0, 0);
-    for (pixel, (&a, &b)) in left.iter().zip(right).enumerate() {
+    let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
         for depth in [a, b] {
             if depth != f32::INFINITY {
                 finite(depth.into(), "depth", size, pixel)?;
             }
         }
-        match (a.is_finite(), b.is_finite()) {
-            (true, true) => differences.push((f64::from(a) - f64::from(b)).abs() / unit),
-            (true, false) => missed += 1,
-            (false, true) => extra += 1,
-            (false, false) => {}
-        }
-    }
-    let compared = differences.len() as u64;
-    let spread = Spread::of(&mut differences);
-    Ok(DepthError {
-        reference_hits: compared + missed,
-        missed,
-        extra,
-        compared,
-        mean: spread.map(|s| s.mean),
-        p99: spread.map(|s| s.p99),
-        max: spread.map(|s| s.max),
-    })
+        Entry::of(a.is_finite(), b.is_finite(), || {
+            let voxels = (f64::from(b) - f64::from(a)) / unit;
+            finite(voxels, "depth", size, pixel)
+        })
+    };
+    left.iter().zip(right).enumerate().map(entry).collect()
 }
 
 /// Compares the normal planes.
@@ -111,24 +115,26 @@ pub fn depth_error(
 /// # Errors
 /// Different sizes, a missing normal plane, a normal that is not finite.
 pub fn normal_error(reference: &Frame, frame: &Frame) -> Result<NormalError> {
+    let tally = Tally::of(&normal_entries(reference, frame)?);
+    Ok(NormalError {
+        compared: tally.compared,
+        mean_deg: tally.spread.map(|s| s.mean),
+        p99_deg: tally.spread.map(|s| s.p99),
+    })
+}
+
+/// The angles between the normals, in degrees.
+pub(super) fn normal_entries(reference: &Frame, frame: &Frame) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
     let (left, right) = both(reference, frame, "normal", |f| f.normal.as_deref())?;
-    let mut angles = Vec::new();
-    for (pixel, (a, b)) in left.iter().zip(right).enumerate() {
+    let entry = |(pixel, (a, b)): (usize, (&[f32; 3], &[f32; 3]))| {
         let (a, b) = (a.map(f64::from), b.map(f64::from));
         for component in a.into_iter().chain(b) {
             finite(component, "normal", size, pixel)?;
         }
-        if a != [0.0; 3] && b != [0.0; 3] {
-            angles.push(angle_deg(a, b));
-        }
-    }
-    let spread = Spread::of(&mut angles);
-    Ok(NormalError {
-        compared: angles.len() as u64,
-        mean_deg: spread.map(|s| s.mean),
-        p99_deg: spread.map(|s| s.p99),
-    })
+        Entry::of(a != [0.0; 3], b != [0.0; 3], || Ok(angle_deg(a, b)))
+    };
+    left.iter().zip(right).enumerate().map(entry).collect()
 }
 
 /// From sine and cosine together: exact for small angles, where the arc cosine alone is not.

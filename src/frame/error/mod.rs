@@ -5,17 +5,22 @@
 //! left to compare the figures are `None`.
 
 mod color;
+mod drawing;
+mod entry;
 mod figures;
 mod flip;
 mod geometry;
+mod map;
 mod pairing;
 mod spread;
 mod ssim;
 mod value;
 
 pub use color::{ColorError, color_error};
+pub use entry::Entry;
 pub use figures::{Figures, Scale, figures};
 pub use flip::flip;
 pub use geometry::{DepthError, NormalError, depth_error, normal_error};
+pub use map::{ErrorMap, Quantity};
 pub use ssim::ssim;
 pub use value::{ValueError, value_error};

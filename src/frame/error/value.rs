@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 
+use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite, positive};
-use super::spread::Spread;
 use crate::frame::Frame;
 
 /// Absolute differences of the value plane over pixels that both cover (colour's alpha > 0), as a
@@ -29,29 +29,33 @@ pub struct ValueError {
 /// Different sizes, a missing value plane, a value that is not finite, a range width that is not
 /// positive and finite.
 pub fn value_error(reference: &Frame, frame: &Frame, range_width: f64) -> Result<ValueError> {
+    let tally = Tally::of(&value_entries(reference, frame, range_width)?);
+    Ok(ValueError {
+        compared: tally.compared,
+        missed: tally.missed,
+        extra: tally.extra,
+        mean: tally.spread.map(|s| s.mean),
+        rmse: tally.spread.map(|s| s.rmse),
+        p99: tally.spread.map(|s| s.p99),
+        max: tally.spread.map(|s| s.max),
+    })
+}
+
+/// How much larger the picture's values are, as a share of the range.
+pub(super) fn value_entries(
+    reference: &Frame,
+    frame: &Frame,
+    range_width: f64,
+) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
     let unit = positive(range_width, "width of the value range")?;
     let (left, right) = both(reference, frame, "value", |f| f.value.as_deref())?;
     let covers = |frame: &Frame, pixel: usize| frame.color[pixel][3] > 0.0;
-    let mut differences = Vec::new();
-    let (mut missed, mut extra) = (0, 0);
-    for (pixel, (&a, &b)) in left.iter().zip(right).enumerate() {
-        let difference = finite((f64::from(a) - f64::from(b)).abs(), "value", size, pixel)?;
-        match (covers(reference, pixel), covers(frame, pixel)) {
-            (true, true) => differences.push(difference / unit),
-            (true, false) => missed += 1,
-            (false, true) => extra += 1,
-            (false, false) => {}
-        }
-    }
-    let spread = Spread::of(&mut differences);
-    Ok(ValueError {
-        compared: differences.len() as u64,
-        missed,
-        extra,
-        mean: spread.map(|s| s.mean),
-        rmse: spread.map(|s| s.rmse),
-        p99: spread.map(|s| s.p99),
-        max: spread.map(|s| s.max),
-    })
+    let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
+        let difference = finite(f64::from(b) - f64::from(a), "value", size, pixel)?;
+        Entry::of(covers(reference, pixel), covers(frame, pixel), || {
+            finite(difference / unit, "value", size, pixel)
+        })
+    };
+    left.iter().zip(right).enumerate().map(entry).collect()
 }

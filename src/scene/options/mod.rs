@@ -8,6 +8,7 @@
 //! What does not determine the picture (its file, the device) is no scene option, but its flags can
 //! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
 
+mod bound;
 mod camera;
 mod clip;
 mod file;
@@ -25,6 +26,7 @@ mod values;
 mod volume;
 mod words;
 
+pub use bound::{ErrorBound, ErrorMetric, ToleranceOptions};
 pub use camera::CameraOptions;
 pub use clip::ClipOptions;
 pub use file::{SceneFile, flag_names};
@@ -117,6 +119,11 @@ impl SceneOptions {
             sampling: self.sampling.over(file.sampling),
             tone: self.tone.over(file.tone),
         }
+    }
+
+    /// What kind of picture this is.
+    pub fn mode(&self) -> Mode {
+        self.picture.mode()
     }
 
     /// All that can be known without the volume: contradictions refused, the transfer function

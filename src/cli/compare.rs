@@ -1,0 +1,402 @@
+//! `angioray compare`.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Instant;
+
+use serde_json::json;
+
+use crate::compare::{Compared, Comparison, Configs, Folder, ModeSettings, Row, printed_table};
+use crate::error::{Error, Result};
+use crate::gpu::Device;
+use crate::measure::{Peer, Truth};
+use crate::octree::Octree;
+use crate::render::{Options, Renderer};
+use crate::report::Report;
+use crate::scene::options::group::group;
+use crate::scene::options::plain::readable;
+use crate::scene::{FilePath, Mode, SceneFile, SceneOptions, TransferChoice};
+use crate::volume::files_of;
+
+use super::engine::{DeviceOptions, Engine};
+use super::load::{Loaded, Source, ms_since};
+use super::outputs;
+use super::progress::Bars;
+use super::repeat::command_line;
+use super::scene::SceneArgument;
+use super::stats::{DeviceStats, VERSION, VolumeStats};
+use super::terminal::{message, note, to_stdout};
+
+/// Render modes and settings side by side, judged against the reference and timed
+#[derive(clap::Args)]
+#[command(override_usage = "angioray compare VOLUME -o DIR [OPTIONS]")]
+#[command(after_help = "Example:
+  angioray compare head.nrrd -o head
+  angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
+  angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
+  angioray compare head.nrrd -o head --peer 'target/peers/bin/python scripts/peers/vtk_peer.py'
+
+A file of settings, for --configs:
+  [[setting]]
+  name = \"coarse\"
+  modes = [\"iso\", \"mip\"]
+  step = 2
+  probe = \"off\"")]
+pub struct CompareArguments {
+    #[command(flatten)]
+    options: SceneOptions,
+
+    #[command(flatten)]
+    scene: SceneArgument,
+
+    #[command(flatten)]
+    compare: CompareOptions,
+
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+group! {
+    /// What is compared, and where it goes.
+    #[command(next_help_heading = "Comparison")]
+    pub struct CompareOptions {
+        /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
+        /// made where there is none
+        #[arg(short, long, value_name = "DIR")]
+        output: FilePath,
+
+        /// The modes, with commas between [default: iso,mip,lmip,dvr; that of the scene file where
+        /// it has one]
+        #[arg(long, value_name = "LIST")]
+        modes: Modes,
+
+        /// Compare the settings of this TOML file in place of the built-in ones
+        #[arg(long, value_name = "FILE.toml")]
+        configs: FilePath,
+
+        /// How often each setting is timed, after one frame to warm up, all in turn [default: 5]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        repeats: u32,
+
+        /// Another renderer to compare with, as a command line that speaks the protocol of
+        /// scripts/peers; may be given several times
+        #[arg(long, value_name = "COMMAND")]
+        peer: Vec<String>,
+
+        /// Where the reference's pictures are kept, so that each is computed once: a folder, or off
+        /// [default: angioray in the user's cache folder]
+        #[arg(long, value_name = "DIR|off")]
+        cache: FilePath,
+    }
+}
+
+/// Those shown where none are named.
+const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
+const REPEATS: u32 = 5;
+
+impl CompareArguments {
+    pub fn run(self) -> Result<()> {
+        let file = self.scene.open()?;
+        let compare = self.compare.over(CompareOptions::of_file(&file)?);
+        let mut of_file = SceneOptions::of_file(&file)?;
+        let mode_of_file = of_file.picture.mode.take();
+        let options = self.options.over(of_file);
+        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over(device);
+
+        if let Some(mode) = options.picture.mode {
+            return Err(
+                Error::usage("'--mode' is of one picture, and a comparison has several")
+                    .hint(format!("write --modes {mode}")),
+            );
+        }
+        let Some(FilePath(output)) = &compare.output else {
+            return Err(Error::usage("no folder for the comparison was named")
+                .hint("give it by '--output', or as 'output' in the scene file"));
+        };
+        let repeats = compare.repeats.unwrap_or(REPEATS);
+        if repeats == 0 {
+            return Err(Error::usage("'--repeats 0' times nothing").hint("give a number from 1 on"));
+        }
+        let configs = compare.configs.as_ref();
+        let configs = configs
+            .map(|FilePath(path)| Configs::read(path))
+            .transpose()?;
+        let source = Source::of(&options.volume)?;
+        let Engine::Device { device, work_group } = Engine::open(&device)? else {
+            return Err(Error::usage(
+                "the reference cannot be compared: it is what others are held against",
+            )
+            .hint("choose an OpenCL device: 'angioray devices' lists them"));
+        };
+        let folder = Folder::new(output)?;
+        let configs_file = compare
+            .configs
+            .as_ref()
+            .map(|FilePath(path)| path.as_path());
+        check_inputs(&folder, &source, &options, self.scene.path(), configs_file)?;
+        let commands = compare.peer.as_deref().unwrap_or_default();
+        let mut peers = commands
+            .iter()
+            .map(|command| Peer::start(command))
+            .collect::<Result<Vec<Peer>>>()?;
+
+        let bars = Bars::new();
+        let loaded = source.load(&bars)?;
+        let modes = match (compare.modes, mode_of_file) {
+            (Some(Modes(modes)), _) => modes,
+            (None, Some(mode)) => vec![mode],
+            (None, None) => MODES.to_vec(),
+        };
+        let modes = modes
+            .into_iter()
+            .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))
+            .collect::<Result<Vec<ModeSettings>>>()?;
+        for of_mode in &modes {
+            let notes = of_mode.resolved.notes.iter();
+            notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
+        }
+        for peer in &mut peers {
+            peer.load(&loaded.volume)?;
+        }
+        let began = Instant::now();
+        let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
+        let octree_ms = ms_since(began);
+        let options = Options {
+            work_group: work_group.map(Into::into),
+        };
+        let mut renderer = Renderer::new(&device, &loaded.volume, &octree, options)?;
+        let truth = match cache_folder(compare.cache) {
+            Some(folder) => Truth::kept_in(&folder, &loaded.volume)?,
+            None => Truth::uncached(&loaded.volume),
+        };
+        let comparison = Comparison {
+            volume: &loaded.volume,
+            subject: loaded.subject,
+            truth,
+            modes,
+            repeats: repeats as usize,
+            about: about(&device, &source, &loaded, octree_ms, repeats),
+            folder,
+            progress: &bars,
+        };
+        message(format_args!("compare on {}", device.info().name));
+        let compared = comparison.run(&mut renderer, &mut peers)?;
+        let (rows, findings) = (compared.rows.clone(), compared.findings.clone());
+        report(&comparison, compared, &device, &source, &peers)
+            .write(&comparison.folder.report())?;
+        tell(&comparison.folder, &rows, &findings)
+    }
+}
+
+impl CompareOptions {
+    /// What a scene file says of the comparison; the files that it names are relative to it.
+    fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        let named_here = |path: FilePath| file.named_here(path);
+        let is_off = |FilePath(path): &FilePath| path.as_os_str() == OFF;
+        Ok(Self {
+            output: options.output.map(named_here),
+            configs: options.configs.map(named_here),
+            cache: options.cache.map(|path| {
+                if is_off(&path) {
+                    path
+                } else {
+                    file.named_here(path)
+                }
+            }),
+            ..options
+        })
+    }
+}
+
+/// `--modes`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Modes(Vec<Mode>);
+
+impl FromStr for Modes {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let modes = text.split(',').map(str::parse::<Mode>);
+        let modes: Vec<Mode> = modes.collect::<Result<_>>()?;
+        match modes
+            .iter()
+            .enumerate()
+            .find(|(at, mode)| modes[..*at].contains(mode))
+        {
+            Some((_, twice)) => Err(Error::usage(format!("'{twice}' is named twice"))),
+            None => Ok(Self(modes)),
+        }
+    }
+}
+
+readable!(Modes);
+
+/// A mode in its settings: those of the file, or the built-in ones, and what the flags say of how
+/// rays are followed as a further one.
+fn mode_settings(
+    mode: Mode,
+    options: &SceneOptions,
+    configs: Option<&Configs>,
+    loaded: &Loaded,
+) -> Result<ModeSettings> {
+    let settings = configs.map(|configs| configs.of_mode(mode));
+    let mut of_mode = ModeSettings::new(mode, options, settings, &loaded.subject)?;
+    of_mode.add_given(options, &loaded.subject)?;
+    Ok(of_mode)
+}
+
+/// That no file of the comparison replaces one that it reads.
+fn check_inputs(
+    folder: &Folder,
+    source: &Source,
+    options: &SceneOptions,
+    scene: Option<&Path>,
+    configs: Option<&Path>,
+) -> Result<()> {
+    let transfer = options.picture.tf.as_ref().and_then(TransferChoice::file);
+    let volume = files_of(&source.path);
+    let others = [scene, configs, transfer.as_deref()].into_iter().flatten();
+    let inputs: Vec<&Path> = volume.iter().map(PathBuf::as_path).chain(others).collect();
+    for file in [folder.json(), folder.csv(), folder.report()] {
+        outputs::check(&file, &inputs)?;
+    }
+    Ok(())
+}
+
+/// Turns the cache off.
+const OFF: &str = "off";
+
+/// Where reference pictures are kept: where the user says, else where programs of this system keep
+/// what can be made again (XDG Base Directory Specification).
+fn cache_folder(asked: Option<FilePath>) -> Option<PathBuf> {
+    match asked {
+        Some(FilePath(path)) if path.as_os_str() == OFF => None,
+        Some(FilePath(path)) => Some(path),
+        None => {
+            let named = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
+            let named = named.filter(|path| path.is_absolute());
+            let home = || Some(std::env::home_dir()?.join(".cache"));
+            Some(named.or_else(home)?.join("angioray"))
+        }
+    }
+}
+
+/// What the results say beside their rows.
+fn about(
+    device: &Device,
+    source: &Source,
+    loaded: &Loaded,
+    octree_ms: f64,
+    repeats: u32,
+) -> serde_json::Value {
+    json!({
+        "version": VERSION,
+        "command": "compare",
+        "command_line": command_line(),
+        "volume": VolumeStats::of(&source.path, &loaded.volume, loaded.non_finite),
+        "device": DeviceStats::from(device.info()),
+        "repeats": repeats,
+        "times_ms": {
+            "read": loaded.read_ms,
+            "smooth": loaded.smooth_ms,
+            "octree": octree_ms,
+        },
+    })
+}
+
+/// What the page says around the modes' sections.
+fn report(
+    comparison: &Comparison,
+    compared: Compared,
+    device: &Device,
+    source: &Source,
+    peers: &[Peer],
+) -> Report {
+    let volume = comparison.volume;
+    let name = source
+        .path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let [nx, ny, nz] = volume.dims().array();
+    let spacing = volume.geometry().spacing_mm();
+    let info = device.info();
+    let mut facts = vec![
+        ("Volume", name.to_string()),
+        (
+            "Voxels",
+            format!(
+                "{nx} × {ny} × {nz}, {}",
+                volume.voxels().voxel_type().name()
+            ),
+        ),
+        (
+            "Spacing",
+            format!("{:.4} × {:.4} × {:.4} mm", spacing.x, spacing.y, spacing.z),
+        ),
+        ("Device", info.name.clone()),
+        ("Driver", format!("{}, {}", info.platform, info.driver)),
+        ("Program", format!("angioray {VERSION}")),
+        (
+            "Protocol",
+            format!(
+                "one frame to warm up, then {} in turn; medians",
+                comparison.repeats
+            ),
+        ),
+    ];
+    if let Some(size) = comparison
+        .modes
+        .first()
+        .map(|mode| mode.resolved.scene.size)
+    {
+        facts.insert(3, ("Pictures", format!("{size} pixels")));
+    }
+    for peer in peers {
+        let text = format!("{}, {}", peer.version(), peer.device());
+        facts.push(("Compared with", format!("{} {text}", peer.name())));
+    }
+    Report {
+        title: format!("{name}: speed against error"),
+        summary: "Every picture here was drawn several ways and held against a reference that \
+            solves the picture by its definition, in double precision. Points further down are \
+            nearer to the truth, points further left are faster; the line joins the settings that \
+            nothing beats in both."
+            .into(),
+        facts: facts
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect(),
+        command: command_line(),
+        findings: compared.findings,
+        sections: compared.sections,
+    }
+}
+
+/// Says on stdout what came out, where it lies, and what failed.
+fn tell(folder: &Folder, rows: &[Row], findings: &[String]) -> Result<()> {
+    to_stdout(|out| {
+        writeln!(out, "{}", printed_table(rows).markdown())?;
+        findings
+            .iter()
+            .try_for_each(|sentence| writeln!(out, "- {sentence}"))
+    })?;
+    for path in [folder.report(), folder.json(), folder.csv()] {
+        message(format_args!("wrote {}", path.display()));
+    }
+    let failed: Vec<&Row> = rows.iter().filter(|row| row.failure.is_some()).collect();
+    let Some(first) = failed.first() else {
+        return Ok(());
+    };
+    let why = first.failure.as_deref().unwrap_or_default();
+    Err(Error::failed(format!(
+        "{} of {} settings failed: {}: {}: {why}",
+        failed.len(),
+        rows.len(),
+        first.mode,
+        first.title()
+    ))
+    .hint("the rows of the others are in the results"))
+}

@@ -1,0 +1,119 @@
+//! `--max-error`: what was chosen, for the user and for the statistics.
+
+use serde::Serialize;
+
+use crate::scene::options::concise;
+use crate::scene::{ErrorBound, ErrorMetric};
+use crate::tolerance::{CONFIDENCE, Choice};
+
+/// One sentence about a choice.
+pub fn note_of(choice: &Choice) -> String {
+    let Choice {
+        bound,
+        setting,
+        verified,
+        cost,
+        ..
+    } = choice;
+    let metric = bound.metric();
+    let limit = match metric {
+        ErrorMetric::Psnr => "at least",
+        _ => "at most",
+    };
+    let outcome = if choice.met {
+        format!("chose {}", setting.flags())
+    } else {
+        format!("nothing keeps it, {} is used", setting.flags())
+    };
+    let tiles = match (verified.tiles, choice.met) {
+        (0, _) => "every pixel was held against the reference".to_owned(),
+        (tiles, true) => format!("verified on {tiles} fresh tiles"),
+        (tiles, false) => format!("as {tiles} fresh tiles have it"),
+    };
+    format!(
+        "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
+         {tiles}; {} settings tried in {:.1} s",
+        concise(bound.bound()),
+        concise(rounded(choice.estimate)),
+        concise(rounded(choice.upper)),
+        100.0 * CONFIDENCE,
+        choice.tried.len(),
+        cost.ms / 1e3,
+    )
+}
+
+/// To three digits: more would not be known.
+fn rounded(figure: f64) -> f64 {
+    format!("{figure:.2e}").parse().unwrap_or(figure)
+}
+
+/// A choice in the statistics. Errors are in the metric's own unit, `null` where there is no number
+/// for them: the depth error of a picture that misses hits.
+#[derive(Serialize)]
+pub struct ToleranceStats {
+    metric: &'static str,
+    bound: f64,
+    /// As flags.
+    chosen: String,
+    estimate: f64,
+    upper: f64,
+    confidence: f64,
+    verified: VerifiedStats,
+    met: bool,
+    tried: Vec<TriedStats>,
+    cost: CostStats,
+}
+
+#[derive(Serialize)]
+struct VerifiedStats {
+    tiles: usize,
+    rays: usize,
+}
+
+#[derive(Serialize)]
+struct TriedStats {
+    setting: String,
+    ms: Option<f64>,
+    error: f64,
+    judged: bool,
+}
+
+#[derive(Serialize)]
+struct CostStats {
+    ms: f64,
+    build_ms: f64,
+    reference_rays: u64,
+    renderings: usize,
+}
+
+impl ToleranceStats {
+    pub fn of(choice: &Choice) -> Self {
+        let bound: ErrorBound = choice.bound;
+        let tried = choice.tried.iter().map(|tried| TriedStats {
+            setting: tried.setting.flags(),
+            ms: tried.ms,
+            error: tried.error,
+            judged: tried.judged,
+        });
+        Self {
+            metric: bound.metric().name(),
+            bound: bound.bound(),
+            chosen: choice.setting.flags(),
+            estimate: choice.estimate,
+            upper: choice.upper,
+            confidence: CONFIDENCE,
+            verified: VerifiedStats {
+                tiles: choice.verified.tiles,
+                rays: choice.verified.rays,
+            },
+            met: choice.met,
+            tried: tried.collect(),
+            cost: CostStats {
+                ms: choice.cost.ms,
+                build_ms: choice.cost.build_ms,
+                reference_rays: choice.cost.rays,
+                renderings: choice.cost.renderings,
+            },
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! `--configs`: the settings that are compared, from a file.
+
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::scene::{Mode, Setting};
+
+/// What a file of settings says.
+///
+/// ```toml
+/// [[setting]]
+/// name = "coarse"
+/// modes = ["iso", "mip"]      # left out: every mode
+/// step = 2
+/// probe = "off"
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Configs {
+    settings: Vec<Config>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Config {
+    setting: Setting,
+    modes: Option<Vec<Mode>>,
+}
+
+impl Configs {
+    /// # Errors
+    /// The file cannot be read; usage: it is no TOML, has other tables than `[[setting]]`, or a
+    /// setting has no name or another's, or says what no setting can.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text =
+            std::fs::read_to_string(path).map_err(|cause| Error::io(path, "read", &cause))?;
+        Self::parse(&text).map_err(|error| error.at(path.display()))
+    }
+
+    fn parse(text: &str) -> Result<Self> {
+        let wrong = |sentence: String| {
+            Error::usage(sentence).hint("write [[setting]], a name, and keys such as step = 0.5")
+        };
+        let table: toml::Table = text
+            .parse()
+            .map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
+        if let Some(key) = table.keys().find(|key| *key != "setting") {
+            return Err(wrong(format!("'{key}' is no part of a file of settings")));
+        }
+        let Some(toml::Value::Array(entries)) = table.get("setting") else {
+            return Err(wrong("there is no [[setting]]".into()));
+        };
+        let mut settings: Vec<Config> = Vec::new();
+        for (at, entry) in entries.iter().enumerate() {
+            let toml::Value::Table(entry) = entry else {
+                return Err(wrong(format!("setting {} is no table", at + 1)));
+            };
+            let config = Config::of(entry.clone(), at + 1)?;
+            let name = config.setting.name();
+            if settings.iter().any(|other| other.setting.name() == name) {
+                return Err(wrong(format!("two settings are called '{name}'")));
+            }
+            settings.push(config);
+        }
+        Ok(Self { settings })
+    }
+
+    /// Those for a mode, in the file's order.
+    pub fn of_mode(&self, mode: Mode) -> Vec<Setting> {
+        let suits = |config: &&Config| {
+            let modes = config.modes.as_ref();
+            modes.is_none_or(|modes| modes.contains(&mode))
+        };
+        let configs = self.settings.iter().filter(suits);
+        configs.map(|config| config.setting.clone()).collect()
+    }
+}
+
+impl Config {
+    /// `number` counts from 1.
+    fn of(mut entry: toml::Table, number: usize) -> Result<Self> {
+        let name = match entry.remove("name") {
+            Some(toml::Value::String(name)) if !name.trim().is_empty() => name,
+            _ => {
+                return Err(Error::usage(format!("setting {number} has no name"))
+                    .hint("write name = \"...\""));
+            }
+        };
+        let modes = match entry.remove("modes") {
+            None => None,
+            Some(toml::Value::Array(modes)) => {
+                let mode = |mode: &toml::Value| {
+                    let text = mode.as_str().unwrap_or_default();
+                    text.parse::<Mode>()
+                };
+                let modes: Result<Vec<Mode>> = modes.iter().map(mode).collect();
+                Some(modes.map_err(|error| error.at(format!("setting '{name}'")))?)
+            }
+            Some(_) => {
+                return Err(Error::usage(format!(
+                    "setting '{name}': modes is a list, such as [\"iso\", \"mip\"]"
+                )));
+            }
+        };
+        Ok(Self {
+            setting: Setting::parse(name, &entry.to_string())?,
+            modes,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_for_the_modes_that_they_name() {
+        let text = "[[setting]]\nname = 'a'\nstep = 2\nprobe = 'off'\n\
+            [[setting]]\nname = 'b'\nmodes = ['mip']\nsampling = 'exact'\n";
+        let configs = Configs::parse(text).unwrap();
+        let names = |mode| -> Vec<String> {
+            let settings = configs.of_mode(mode);
+            settings.iter().map(|one| one.name().to_owned()).collect()
+        };
+        assert_eq!(names(Mode::Mip), ["a", "b"]);
+        assert_eq!(names(Mode::Iso), ["a"]);
+        assert_eq!(
+            configs.of_mode(Mode::Iso)[0].flags(),
+            "--probe off --step 2"
+        );
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (text, sentence) in [
+            ("x = [", "array"),
+            ("", "there is no [[setting]]"),
+            ("[camera]\nfov = 3", "'camera' is no part"),
+            ("setting = 3", "there is no [[setting]]"),
+            ("setting = [3]", "setting 1 is no table"),
+            ("[[setting]]\nstep = 2", "setting 1 has no name"),
+            ("[[setting]]\nname = 'a'\nmodes = 'iso'", "modes is a list"),
+            (
+                "[[setting]]\nname = 'a'\nmodes = ['x']",
+                "'x' is not a mode",
+            ),
+            (
+                "[[setting]]\nname = 'a'\niso = 3",
+                "'iso' says what is seen",
+            ),
+            ("[[setting]]\nname = 'a'\nstp = 3", "stp"),
+            (
+                "[[setting]]\nname = 'a'\n[[setting]]\nname = 'a'",
+                "two settings are called 'a'",
+            ),
+        ] {
+            let refused = Configs::parse(text).unwrap_err().to_string();
+            assert!(refused.contains(sentence), "{text}: {refused}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! A mode's part of the report.
+
+use crate::measure::Wrongness;
+use crate::report::{Axis, Bar, Bars, Gallery, Picture, Point, Scatter, Section, figure};
+use crate::scene::Mode;
+
+use super::columns::short_table;
+use super::row::Row;
+
+/// A mode's pictures, the reference first, its plots and its table.
+pub fn section(mode: Mode, about: String, rows: &[Row], pictures: Vec<Picture>) -> Section {
+    Section {
+        title: title(mode).into(),
+        about,
+        gallery: Some(Gallery { pictures }),
+        scatters: Wrongness::of_mode(mode)
+            .iter()
+            .map(|wrongness| scatter(wrongness, rows))
+            .filter(|scatter| !scatter.points.is_empty())
+            .collect(),
+        bars: bars(rows),
+        table: Some(short_table(rows)),
+    }
+}
+
+fn title(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Iso => "Isosurface",
+        Mode::Mip => "Maximum intensity projection",
+        Mode::Lmip => "Local maximum intensity projection",
+        Mode::Minip => "Minimum intensity projection",
+        Mode::Mean => "Mean intensity projection",
+        Mode::Dvr => "Emission and absorption",
+    }
+}
+
+fn scatter(wrongness: &Wrongness, rows: &[Row]) -> Scatter {
+    let point = |row: &Row| {
+        Some(Point {
+            label: row.title(),
+            group: row.family.clone(),
+            x: row.frame_ms()?,
+            y: wrongness.of(row.error.as_ref()?)?,
+            on_front: row.on_front.contains(&wrongness.key),
+            details: details(row),
+        })
+    };
+    Scatter {
+        title: format!("Time against {}", wrongness.title),
+        x: Axis {
+            label: "time of a frame".into(),
+            unit: "ms".into(),
+        },
+        y: Axis {
+            label: wrongness.title.into(),
+            unit: wrongness.unit.into(),
+        },
+        points: rows.iter().filter_map(point).collect(),
+    }
+}
+
+/// What a point tells beside its place: the row's figures as its table shows them.
+fn details(row: &Row) -> Vec<(String, String)> {
+    let table = short_table(std::slice::from_ref(row));
+    let mut details = table.named(0);
+    if let Some(frame) = row.times_ms.frame {
+        details.push((
+            "spread".into(),
+            format!("± {:.2} ms over {} frames", frame.mad, row.times_ms.repeats),
+        ));
+    }
+    if !row.flags.is_empty() {
+        details.push(("flags".into(), row.flags.clone()));
+    }
+    details
+}
+
+/// Of those whose passes are known.
+fn bars(rows: &[Row]) -> Option<Bars> {
+    let bar = |row: &Row| Bar {
+        label: row.title(),
+        parts: row
+            .passes
+            .iter()
+            .map(|pass| (pass.name.clone(), pass.ms))
+            .collect(),
+    };
+    let rows: Vec<Bar> = rows
+        .iter()
+        .filter(|row| !row.passes.is_empty())
+        .map(bar)
+        .collect();
+    (!rows.is_empty()).then(|| Bars {
+        title: "Passes of a frame, on the device's clock".into(),
+        unit: "ms".into(),
+        rows,
+    })
+}
+
+/// A picture's line: how long, and how wrong by what matters first.
+pub fn caption(mode: Mode, row: &Row) -> String {
+    let mut parts = Vec::new();
+    if let Some(ms) = row.frame_ms() {
+        parts.push(format!("{ms:.1} ms"));
+    }
+    if let Some(error) = &row.error {
+        if let Some(depth) = error.depth {
+            parts.push(format!(
+                "{} of {} hits missed, {} added",
+                depth.missed, depth.reference_hits, depth.extra
+            ));
+        }
+        let first = Wrongness::of_mode(mode).iter();
+        let first = first
+            .filter(|wrongness| wrongness.key != "wrong_hits")
+            .take(1);
+        for wrongness in first {
+            if let Some(wrong) = wrongness.of(error) {
+                parts.push(format!(
+                    "{} {} {}",
+                    wrongness.title,
+                    figure(wrong),
+                    wrongness.unit
+                ));
+            }
+        }
+    }
+    parts.join(" · ")
+}
+
+/// The settings that nothing beats in both time and what matters most, fastest first.
+pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
+    let wrongness = Wrongness::of_mode(mode).first()?;
+    let mut front: Vec<(f64, f64, String)> = rows
+        .iter()
+        .filter(|row| row.on_front.contains(&wrongness.key))
+        .filter_map(|row| {
+            let wrong = wrongness.of(row.error.as_ref()?)?;
+            Some((row.frame_ms()?, wrong, row.title()))
+        })
+        .collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let settings = front
+        .iter()
+        .map(|(ms, wrong, name)| format!("{name} ({} ms, {})", figure(*ms), figure(*wrong)));
+    let settings = settings.collect::<Vec<_>>().join(", ");
+    (!front.is_empty()).then(|| {
+        format!(
+            "{mode}: nothing is both faster and nearer to the truth than {settings}; {}, in {}",
+            wrongness.title, wrongness.unit
+        )
+    })
+}

@@ -1,0 +1,171 @@
+//! What is known of one contender in one mode.
+
+use serde::Serialize;
+
+use crate::frame::Frame;
+use crate::frame::error::Figures;
+use crate::measure::{Counts, FrameTime, Judged, Times};
+
+/// A row of the results; what is not known yet, or cannot be, is `None`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    pub mode: &'static str,
+    /// The contender's name, one of its own in the mode.
+    pub setting: String,
+    /// `angioray`, or a peer's name and version.
+    pub renderer: String,
+    /// How to ask for the setting; empty of a peer.
+    pub flags: String,
+    /// Settings of one kind.
+    pub family: String,
+    /// Why there is no picture.
+    pub failure: Option<String>,
+    /// In what a peer shows something else than the scene says.
+    pub note: Option<String>,
+    pub error: Option<Figures>,
+    pub times_ms: RowTimes,
+    /// Of the median frame, in launch order.
+    pub passes: Vec<PassMs>,
+    pub counts: Option<Counts>,
+    pub memory: Option<RowMemory>,
+    /// The keys of the errors by which the setting is on the Pareto front of its mode.
+    pub on_front: Vec<&'static str>,
+    /// Beside the results.
+    pub files: Option<RowFiles>,
+}
+
+/// Frames for display, all contenders in turn; what is done once is apart.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct RowTimes {
+    pub repeats: usize,
+    /// From the camera set to pixels that the host can read.
+    pub frame: Option<Spread>,
+    /// From the first launch to the last one's end, on the device's clock.
+    pub render: Option<Spread>,
+    /// Uploading the volume, with the first picture of all.
+    pub upload: Option<f64>,
+    /// Compiling kernels.
+    pub build: Option<f64>,
+    /// Telling from the octree what can be left out.
+    pub classify: Option<f64>,
+    /// Computing and uploading precomputed gradients.
+    pub gradient: Option<f64>,
+    /// What a peer does once for the scene.
+    pub prepare: Option<f64>,
+    /// Writing the PNG.
+    pub encode: Option<f64>,
+}
+
+/// Of the repeats.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    pub median: f64,
+    /// The median of the absolute deviations from the median.
+    pub mad: f64,
+    pub min: f64,
+}
+
+impl From<&Times> for Spread {
+    fn from(times: &Times) -> Self {
+        Self {
+            median: times.median_ms(),
+            mad: times.mad_ms(),
+            min: times.min_ms(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassMs {
+    pub name: String,
+    pub ms: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct RowMemory {
+    pub device_bytes: u64,
+    /// From host to device for this picture; with the first one of all, the volume too.
+    pub uploaded_bytes: u64,
+}
+
+/// File names in the comparison's folder.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct RowFiles {
+    pub png: String,
+    /// Nothing of a peer, which shows encoded pixels only.
+    pub exr: Option<String>,
+    pub error_png: String,
+    pub error_exr: String,
+}
+
+impl Row {
+    /// A row of which nothing is known but who it is of.
+    pub fn new(mode: &'static str, setting: &str, renderer: &str) -> Self {
+        Self {
+            mode,
+            setting: setting.to_owned(),
+            renderer: renderer.to_owned(),
+            flags: String::new(),
+            family: renderer.to_owned(),
+            failure: None,
+            note: None,
+            error: None,
+            times_ms: RowTimes::default(),
+            passes: Vec::new(),
+            counts: None,
+            memory: None,
+            on_front: Vec::new(),
+            files: None,
+        }
+    }
+
+    /// Takes over what a rendering cost and how wrong it is; gives its frame.
+    pub fn judged(&mut self, judged: Judged) -> Frame {
+        let rendering = judged.rendering;
+        self.error = Some(judged.figures);
+        self.counts = Some(judged.counts);
+        self.memory = Some(RowMemory {
+            device_bytes: rendering.device_bytes,
+            uploaded_bytes: rendering.uploaded_bytes,
+        });
+        self.times_ms.upload = Some(rendering.upload_ms);
+        self.times_ms.build = Some(rendering.build_ms);
+        self.times_ms.classify = Some(rendering.classify_ms);
+        self.times_ms.gradient = rendering.gradients.map(|figures| figures.ms);
+        rendering.frame
+    }
+
+    /// Takes over what the repeats took; of the passes, those of the median frame.
+    pub fn timed(&mut self, frames: &[FrameTime]) {
+        let frame: Times = frames.iter().map(|time| time.frame_ms).collect();
+        let render: Times = frames.iter().map(|time| time.render_ms).collect();
+        self.times_ms.repeats = frames.len();
+        self.times_ms.frame = (!frames.is_empty()).then(|| Spread::from(&frame));
+        // A peer has no device's clock.
+        let clocked = frames.iter().any(|time| !time.passes.is_empty());
+        self.times_ms.render = clocked.then(|| Spread::from(&render));
+        let is_median = |time: &&FrameTime| time.frame_ms == frame.median_ms();
+        if let Some(median) = frames.iter().find(is_median) {
+            let passes = median.passes.iter();
+            self.passes = passes
+                .map(|pass| PassMs {
+                    name: pass.name.to_owned(),
+                    ms: pass.ms,
+                })
+                .collect();
+        }
+    }
+
+    /// What people call it: the setting, and of another renderer whose it is.
+    pub fn title(&self) -> String {
+        match self.renderer.as_str() {
+            super::OURS => self.setting.clone(),
+            other => format!("{other}: {}", self.setting),
+        }
+    }
+
+    /// The median frame, ms.
+    pub fn frame_ms(&self) -> Option<f64> {
+        self.times_ms.frame.map(|frame| frame.median)
+    }
+}

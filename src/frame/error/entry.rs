@@ -1,0 +1,66 @@
+//! What there is to say of one pixel of two pictures.
+
+use super::spread::Spread;
+
+/// One pixel, as to one quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Entry {
+    /// Neither picture has anything here.
+    Nothing,
+    /// Only the reference has.
+    Missed,
+    /// Only the other picture has.
+    Extra,
+    /// The picture minus the reference; finite.
+    Difference(f64),
+}
+
+impl Entry {
+    pub fn difference(self) -> Option<f64> {
+        match self {
+            Self::Difference(difference) => Some(difference),
+            _ => None,
+        }
+    }
+
+    /// `difference` where both pictures have something.
+    ///
+    /// # Errors
+    /// That of `difference`.
+    pub(super) fn of<E>(
+        in_reference: bool,
+        in_frame: bool,
+        difference: impl FnOnce() -> Result<f64, E>,
+    ) -> Result<Self, E> {
+        Ok(match (in_reference, in_frame) {
+            (true, true) => Self::Difference(difference()?),
+            (true, false) => Self::Missed,
+            (false, true) => Self::Extra,
+            (false, false) => Self::Nothing,
+        })
+    }
+}
+
+/// Entries counted, and their absolute differences.
+pub(super) struct Tally {
+    pub missed: u64,
+    pub extra: u64,
+    pub compared: u64,
+    pub spread: Option<Spread>,
+}
+
+impl Tally {
+    pub fn of(entries: &[Entry]) -> Self {
+        let count = |which| entries.iter().filter(|&&entry| entry == which).count() as u64;
+        let mut differences: Vec<f64> = entries
+            .iter()
+            .filter_map(|entry| entry.difference().map(f64::abs))
+            .collect();
+        Self {
+            missed: count(Entry::Missed),
+            extra: count(Entry::Extra),
+            compared: differences.len() as u64,
+            spread: Spread::of(&mut differences),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A setting's picture held against the truth, and what one frame takes.
+
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::frame::error::{Figures, Scale, figures};
+use crate::frame::{Frame, Wanted};
+use crate::gpu::PassTime;
+use crate::render::{Renderer, Rendering};
+use crate::scene::{Picture, Scene};
+use crate::volume::Volume;
+
+use super::Counts;
+
+/// The planes in which a picture of this kind can be wrong, and the counters. A surface's values
+/// are all the iso value, and a maximum's depth hangs on rounding where the field is flat: neither
+/// is judged.
+pub fn judged_planes(picture: &Picture) -> Wanted {
+    let surface = matches!(picture, Picture::Surface { .. });
+    Wanted {
+        display: true,
+        depth: surface,
+        normal: surface,
+        value: matches!(picture, Picture::Projection { .. }),
+        counters: true,
+        kind: true,
+        certificate: false,
+    }
+}
+
+/// The units of a volume's errors.
+pub fn scale_of(volume: &Volume) -> Scale {
+    Scale {
+        smallest_spacing_mm: volume.geometry().smallest_spacing_mm(),
+        range_width: volume.range().width(),
+    }
+}
+
+/// A picture and how wrong it is.
+pub struct Judged {
+    pub rendering: Rendering,
+    pub figures: Figures,
+    pub counts: Counts,
+}
+
+/// Renders `scene` with the planes of `truth`'s picture and compares them.
+///
+/// # Errors
+/// As [`Renderer::render`] and [`figures`].
+pub fn judge(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    truth: &Frame,
+    scale: Scale,
+) -> Result<Judged> {
+    let rendering = renderer.render(scene, judged_planes(&scene.picture))?;
+    Ok(Judged {
+        figures: figures(truth, &rendering.frame, scale)?,
+        counts: Counts::of(&rendering.frame, &scene.picture),
+        rendering,
+    })
+}
+
+/// What one picture for display took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameTime {
+    /// From the camera set to pixels that the host can read, on the host's clock.
+    pub frame_ms: f64,
+    /// From the first launch to the last one's end, on the device's clock.
+    pub render_ms: f64,
+    /// On the device's clock.
+    pub passes: Vec<PassTime>,
+}
+
+/// Renders `scene` for display alone.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn time(renderer: &mut Renderer, scene: &Scene) -> Result<FrameTime> {
+    let wanted = Wanted {
+        display: true,
+        ..Wanted::default()
+    };
+    let began = Instant::now();
+    let rendering = renderer.render(scene, wanted)?;
+    Ok(FrameTime {
+        frame_ms: began.elapsed().as_secs_f64() * 1e3,
+        render_ms: rendering.render_ms,
+        passes: rendering.passes,
+    })
+}

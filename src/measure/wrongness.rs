@@ -1,0 +1,73 @@
+//! The one figure by which settings of a mode are ranked.
+
+use crate::frame::error::Figures;
+use crate::scene::Mode;
+
+/// A way to say in one number how wrong a picture is; 0 is right.
+#[derive(Debug, Clone, Copy)]
+pub struct Wrongness {
+    /// For programs.
+    pub key: &'static str,
+    /// For people, its unit apart.
+    pub title: &'static str,
+    /// Empty where the figure has none.
+    pub unit: &'static str,
+    of: fn(&Figures) -> Option<f64>,
+}
+
+impl Wrongness {
+    /// Nothing where the figures do not tell.
+    pub fn of(&self, figures: &Figures) -> Option<f64> {
+        (self.of)(figures)
+    }
+
+    /// What matters in a mode, the most important first.
+    pub fn of_mode(mode: Mode) -> &'static [Self] {
+        match mode {
+            Mode::Iso => &[WRONG_HITS, COLOR_RMSE, DEPTH_P99],
+            Mode::Mip | Mode::Minip | Mode::Lmip | Mode::Mean => &[VALUE_RMSE, COLOR_RMSE],
+            Mode::Dvr => &[COLOR_RMSE, COLOR_MAX],
+        }
+    }
+}
+
+const WRONG_HITS: Wrongness = Wrongness {
+    key: "wrong_hits",
+    title: "hits missed or added",
+    unit: "% of the reference's",
+    of: |figures| {
+        let depth = figures.depth?;
+        let wrong = (depth.missed + depth.extra) as f64;
+        // Where the reference hits nothing every hit is one too many.
+        let hits = depth.reference_hits.max(1) as f64;
+        Some(100.0 * wrong / hits)
+    },
+};
+
+const DEPTH_P99: Wrongness = Wrongness {
+    key: "depth_p99",
+    title: "depth error, 99th percentile",
+    unit: "voxels",
+    of: |figures| figures.depth?.p99,
+};
+
+const VALUE_RMSE: Wrongness = Wrongness {
+    key: "value_rmse",
+    title: "error of the projected value, rms",
+    unit: "% of the value range",
+    of: |figures| Some(100.0 * figures.value?.rmse?),
+};
+
+const COLOR_RMSE: Wrongness = Wrongness {
+    key: "color_rmse",
+    title: "colour error, rms",
+    unit: "of 255",
+    of: |figures| Some(255.0 * figures.color?.rmse),
+};
+
+const COLOR_MAX: Wrongness = Wrongness {
+    key: "color_max",
+    title: "colour error, greatest",
+    unit: "of 255",
+    of: |figures| Some(255.0 * figures.color?.max),
+};

@@ -1,0 +1,423 @@
+//! The cheapest setting that keeps an error bound (`--max-error`).
+//!
+//! A device renders a whole picture in the time in which the reference casts a few hundred rays. So
+//! every candidate is rendered whole, a small picture of the same view first; the reference's rays
+//! are spent on what the device cannot know ([`evidence`] says how the two are put together):
+//!
+//! 1. *Screened* in a small picture: each candidate's error against the device's surest picture, then
+//!    the times of those within the bound, in turn.
+//! 2. *Judged* in the real picture, the fastest first, with an upper confidence limit from random
+//!    tiles of reference rays, until one is within the bound; with it those about as fast, which
+//!    are timed in turn.
+//! 3. *Verified*: the fastest of them (of equals the one of the least error) on fresh tiles, and by
+//!    the reference at the pixels where it is off most. What fails is out, and the next is looked
+//!    at.
+//!
+//! Where nothing keeps the bound, the surest setting is taken, and said to be beyond the bound.
+
+mod candidates;
+mod deviation;
+mod evidence;
+mod student;
+mod tiles;
+
+use std::time::Instant;
+
+pub use candidates::candidates;
+pub use student::CONFIDENCE;
+
+use crate::error::Result;
+use crate::extent::ImageSize;
+use crate::frame::Wanted;
+use crate::measure::interleaved;
+use crate::progress::{Progress, UNKNOWN_TOTAL};
+use crate::render::{Renderer, Rendering};
+use crate::scene::{ErrorBound, Picture, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::volume::Volume;
+
+use deviation::{Deviation, Figure};
+use evidence::{Evidence, Judgement, Sample};
+
+/// Pictures of more pixels are screened in a smaller one of about as many.
+const SCREENED_PIXELS: usize = 128 * 128;
+/// Reference rays for judging, and again for verifying: a share of the pixels within limits.
+const RAYS_SHARE: f64 = 0.05;
+const RAYS: [usize; 2] = [4096, 16384];
+/// Reference rays where a chosen picture is off most.
+const WORST_RAYS: usize = 256;
+/// How much a mean error in the small picture may exceed the bound, and the real one yet keep it.
+const SCREEN_SLACK: f64 = 1.2;
+/// Candidates up to this many times as slow as the fastest that keeps the bound are timed beside
+/// it: times of small pictures are not those of large ones.
+const ABOUT_AS_FAST: f64 = 1.4;
+/// At most so many of them.
+const TIMED_TOGETHER: usize = 5;
+/// Times are taken for equal within this factor.
+const EQUALLY_FAST: f64 = 1.05;
+/// What takes longer than this many times the fastest's time, each timed once, is not timed again.
+const MAYBE_FASTEST: f64 = 2.0;
+/// Repeats in turn: as many as fit into so much time, within limits.
+const REPEATS: [usize; 2] = [1, 7];
+const TIMING_MS: f64 = 400.0;
+
+/// What a setting is chosen for.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub volume: &'a Volume,
+    pub subject: &'a Subject,
+    /// What is seen; of how, at most what is not the bound's to decide
+    /// ([`SceneOptions::undecided`]).
+    pub options: &'a SceneOptions,
+    pub bound: ErrorBound,
+    /// The planes that are rendered afterwards: what the time is taken of.
+    pub wanted: Wanted,
+    /// Of the random tiles.
+    pub seed: u64,
+}
+
+/// A setting that keeps the bound, or the surest one.
+#[derive(Debug)]
+pub struct Choice {
+    pub bound: ErrorBound,
+    pub setting: Setting,
+    /// The scene under it, and the options that make it.
+    pub resolved: Resolved,
+    /// Whether the upper limit is within the bound, on the tiles of the verification too.
+    pub met: bool,
+    /// The error as verified, in the metric's unit.
+    pub estimate: f64,
+    /// The error is at most this (psnr: at least) with [`CONFIDENCE`].
+    pub upper: f64,
+    pub verified: Verified,
+    /// Every candidate, in the grid's order.
+    pub tried: Vec<Tried>,
+    pub cost: Cost,
+}
+
+/// Upon what a choice was verified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Verified {
+    /// Fresh random ones; none where the tiles before were the whole picture.
+    pub tiles: usize,
+    /// The reference's, in these tiles.
+    pub rays: usize,
+}
+
+/// How a candidate did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    pub setting: Setting,
+    /// In the size it was last timed in; of those within the bound.
+    pub ms: Option<f64>,
+    /// As last known, in the metric's unit; infinite for a missed hit's depth.
+    pub error: f64,
+    /// Whether that was in the real picture, held against the reference.
+    pub judged: bool,
+}
+
+/// What a choice itself has cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Cost {
+    pub ms: f64,
+    /// The reference's.
+    pub rays: u64,
+    /// The device's, whole pictures.
+    pub renderings: usize,
+    /// Of `ms`: building kernels, uploading.
+    pub build_ms: f64,
+    pub upload_ms: f64,
+    pub uploaded_bytes: u64,
+}
+
+/// Chooses the cheapest setting of [`candidates`] that keeps the bound.
+///
+/// The choice depends on how long candidates take, and so on the machine and the moment; the
+/// pictures of each setting do not.
+///
+/// # Errors
+/// Usage: the mode has no such metric, the options contradict each other. The device fails.
+pub fn choose(task: &Task, renderer: &mut Renderer, progress: &dyn Progress) -> Result<Choice> {
+    let began = Instant::now();
+    let mode = task.options.mode();
+    task.bound.check(mode)?;
+    let deviation = Deviation::new(task.bound, task.volume)?;
+    let own = task.options.how().undecided();
+    let contenders: Vec<Contender> = candidates(mode)?
+        .into_iter()
+        .map(|setting| Contender::new(&setting, &own, task))
+        .collect::<Result<_>>()?;
+    progress.begin("choosing how", UNKNOWN_TOTAL);
+    let mut search = Search {
+        task,
+        deviation,
+        renderer,
+        contenders,
+        cost: Cost::default(),
+    };
+    let queue = search.screen()?;
+    let found = search.find(queue)?;
+    progress.end();
+    search.cost.ms = began.elapsed().as_secs_f64() * 1e3;
+    Ok(search.choice(found))
+}
+
+/// A candidate in the scene, and what is known of it.
+struct Contender {
+    setting: Setting,
+    resolved: Resolved,
+    ms: Option<f64>,
+    error: f64,
+    judged: bool,
+}
+
+impl Contender {
+    /// A candidate beside what the user says of how rays are followed.
+    fn new(candidate: &Setting, own: &SceneOptions, task: &Task) -> Result<Self> {
+        let how = candidate.over(&SceneOptions::default()).over(own.clone());
+        let setting = Setting::new(candidate.name(), how)?;
+        let resolved = setting
+            .over(task.options)
+            .checked()?
+            .resolve(task.subject)?;
+        Ok(Self {
+            setting,
+            resolved,
+            ms: None,
+            error: f64::INFINITY,
+            judged: false,
+        })
+    }
+}
+
+/// The one found, how it was judged when it was verified, and upon what.
+struct Found {
+    at: usize,
+    met: bool,
+    judgement: Judgement,
+    verified: Verified,
+}
+
+struct Search<'s, 'a> {
+    task: &'s Task<'s>,
+    deviation: Deviation,
+    renderer: &'s mut Renderer<'a>,
+    contenders: Vec<Contender>,
+    cost: Cost,
+}
+
+impl Search<'_, '_> {
+    /// The number of the surest candidate.
+    fn surest(&self) -> usize {
+        self.contenders.len() - 1
+    }
+
+    /// A contender's picture in some size.
+    fn render(&mut self, at: usize, size: ImageSize, wanted: Wanted) -> Result<Rendering> {
+        let scene = Scene {
+            size,
+            ..self.contenders[at].resolved.scene.clone()
+        };
+        let rendering = self.renderer.render(&scene, wanted)?;
+        self.cost.renderings += 1;
+        self.cost.build_ms += rendering.build_ms;
+        self.cost.upload_ms += rendering.upload_ms;
+        self.cost.uploaded_bytes += rendering.uploaded_bytes;
+        Ok(rendering)
+    }
+
+    fn size(&self) -> ImageSize {
+        self.contenders[self.surest()].resolved.scene.size
+    }
+
+    /// Those that are worth a look in the real picture, the fastest first: in a small picture within
+    /// the bound, and no slower than the surest.
+    fn screen(&mut self) -> Result<Vec<usize>> {
+        let size = screened(self.size())?;
+        let wanted = self.deviation.wanted();
+        let surest = self.render(self.surest(), size, wanted)?.frame;
+        let slack = match self.deviation.figure() {
+            Figure::RootMean | Figure::ShareOfHits | Figure::Percentile99 => SCREEN_SLACK,
+            Figure::Greatest => 1.0,
+        };
+        let mut within = Vec::new();
+        for at in 0..self.contenders.len() {
+            let frame = self.render(at, size, wanted)?.frame;
+            let error = self.deviation.between(&surest, &frame);
+            self.contenders[at].error = error;
+            if error <= slack * self.deviation.limit() || at == self.surest() {
+                within.push(at);
+            }
+        }
+        self.time(&within, size)?;
+        let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
+        let most = ms(self.surest()) * EQUALLY_FAST;
+        within.retain(|&at| at == self.surest() || ms(at) <= most);
+        within.sort_by(|&a, &b| ms(a).total_cmp(&ms(b)));
+        Ok(within)
+    }
+
+    /// Times contenders: all once, then in turn those that may be the fastest.
+    fn time(&mut self, group: &[usize], size: ImageSize) -> Result<()> {
+        let wanted = self.task.wanted;
+        for &at in group {
+            let cold = self.render(at, size, wanted)?.render_ms;
+            self.contenders[at].ms = Some(if cold < TIMING_MS / 8.0 {
+                self.render(at, size, wanted)?.render_ms
+            } else {
+                cold // what comes first is a small part of it
+            });
+        }
+        let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
+        let fastest = group.iter().map(|&at| ms(at)).fold(f64::INFINITY, f64::min);
+        let fast = group.iter().copied();
+        let fast: Vec<usize> = fast
+            .filter(|&at| ms(at) <= MAYBE_FASTEST * fastest)
+            .collect();
+        if fast.len() < 2 {
+            return Ok(());
+        }
+        let once: f64 = fast.iter().map(|&at| ms(at)).sum();
+        let repeats = (TIMING_MS / once).clamp(REPEATS[0] as f64, REPEATS[1] as f64);
+        let times = interleaved(&fast, repeats as usize, |&at| {
+            Ok(self.render(at, size, wanted)?.render_ms)
+        })?;
+        for (&at, times) in fast.iter().zip(&times) {
+            self.contenders[at].ms = Some(times.min_ms());
+        }
+        Ok(())
+    }
+
+    /// Judges and verifies, until one keeps the bound.
+    fn find(&mut self, queue: Vec<usize>) -> Result<Found> {
+        let task = self.task;
+        let size = self.size();
+        let surest = self.surest();
+        let surest_scene = self.contenders[surest].resolved.scene.clone();
+        let wanted = Wanted {
+            certificate: matches!(surest_scene.picture, Picture::Surface { .. }),
+            ..self.deviation.wanted()
+        };
+        let frame = self.render(surest, size, wanted)?.frame;
+        let mut evidence =
+            Evidence::new(self.deviation, task.volume, &surest_scene, frame, task.seed)?;
+        let rays = (RAYS_SHARE * size.pixels() as f64) as usize;
+        let rays = rays.clamp(RAYS[0], RAYS[1]);
+        let sample = evidence.draw(rays);
+
+        let mut queue = queue.into_iter().peekable();
+        let mut found = None;
+        while found.is_none() && queue.peek().is_some() {
+            let mut group: Vec<usize> = Vec::new();
+            while let Some(&at) = queue.peek() {
+                let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
+                let is_late = group
+                    .first()
+                    .is_some_and(|&first| ms(at) > ABOUT_AS_FAST * ms(first));
+                if is_late || group.len() == TIMED_TOGETHER {
+                    break;
+                }
+                queue.next();
+                let frame = self.render(at, size, self.deviation.wanted())?.frame;
+                let judgement = evidence.judge(&frame, &sample);
+                self.contenders[at].error = judgement.figure;
+                self.contenders[at].judged = true;
+                if judgement.upper <= self.deviation.limit() {
+                    group.push(at);
+                }
+            }
+            if group.len() > 1 {
+                self.time(&group, size)?;
+            }
+            for at in self.ranked(group) {
+                let candidate = self.verify(at, &mut evidence, rays)?;
+                if candidate.met {
+                    found = Some(candidate);
+                    break;
+                }
+            }
+        }
+        let found = match found {
+            Some(found) => found,
+            // Other tiles may have it otherwise: it was beyond the bound on some.
+            None => Found {
+                met: false,
+                ..self.verify(surest, &mut evidence, rays)?
+            },
+        };
+        self.cost.rays = evidence.rays();
+        Ok(found)
+    }
+
+    /// The fastest first; of those that are equally fast as the fastest left, the one of the least
+    /// error.
+    fn ranked(&self, mut group: Vec<usize>) -> Vec<usize> {
+        let ms = |at: usize| self.contenders[at].ms.unwrap_or(f64::INFINITY);
+        let mut ranked = Vec::with_capacity(group.len());
+        while let Some(fastest) = group.iter().map(|&at| ms(at)).min_by(f64::total_cmp) {
+            let equals = (0..group.len()).filter(|&k| ms(group[k]) <= EQUALLY_FAST * fastest);
+            let error = |k: &usize| self.contenders[group[*k]].error;
+            let Some(best) = equals.min_by(|a, b| error(a).total_cmp(&error(b))) else {
+                break;
+            };
+            ranked.push(group.remove(best));
+        }
+        ranked
+    }
+
+    /// A contender by rays that had no say in choosing it.
+    fn verify(&mut self, at: usize, evidence: &mut Evidence, rays: usize) -> Result<Found> {
+        let size = self.size();
+        let frame = self.render(at, size, self.deviation.wanted())?.frame;
+        let sample: Sample = evidence.draw(rays);
+        evidence.ask_worst(&frame, WORST_RAYS);
+        let judgement = evidence.judge(&frame, &sample);
+        let contender = &mut self.contenders[at];
+        contender.error = judgement.figure;
+        contender.judged = true;
+        Ok(Found {
+            at,
+            met: judgement.upper <= self.deviation.limit(),
+            judgement,
+            verified: Verified {
+                tiles: sample.len(),
+                rays: sample.iter().map(Vec::len).sum(),
+            },
+        })
+    }
+
+    fn choice(self, found: Found) -> Choice {
+        let shown = |figure| self.deviation.shown(figure);
+        let tried = self.contenders.iter().map(|contender| Tried {
+            setting: contender.setting.clone(),
+            ms: contender.ms,
+            error: shown(contender.error),
+            judged: contender.judged,
+        });
+        let tried = tried.collect();
+        let mut contenders = self.contenders;
+        let chosen = contenders.swap_remove(found.at);
+        Choice {
+            bound: self.task.bound,
+            setting: chosen.setting,
+            resolved: chosen.resolved,
+            met: found.met,
+            estimate: self.deviation.shown(found.judgement.figure),
+            upper: self.deviation.shown(found.judgement.upper),
+            verified: found.verified,
+            tried,
+            cost: self.cost,
+        }
+    }
+}
+
+/// A picture of the same shape of at most about [`SCREENED_PIXELS`]; a picture up to twice as large
+/// is its own.
+fn screened(size: ImageSize) -> Result<ImageSize> {
+    let pixels = size.pixels();
+    if pixels <= 2 * SCREENED_PIXELS {
+        return Ok(size);
+    }
+    let scale = (SCREENED_PIXELS as f64 / pixels as f64).sqrt();
+    let side = |px: u32| ((f64::from(px) * scale).round() as u32).max(1);
+    ImageSize::new(side(size.width()), side(size.height()))
+}

@@ -1,0 +1,274 @@
+//! `angioray compare` from outside: its folder, its rows, its refusals. Without a device what needs
+//! one says so and passes, unless REQUIRE_OPENCL=1.
+
+mod cli_place;
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use cli_place::{Place, stderr};
+use serde_json::Value;
+
+/// Where the device under test can be had, its flag.
+fn device() -> Option<String> {
+    let device = common::device()?;
+    Some(format!("--device {}", device.info().id))
+}
+
+fn rows(results: &Value) -> &Vec<Value> {
+    results["rows"].as_array().unwrap()
+}
+
+fn row<'a>(results: &'a Value, mode: &str, setting: &str) -> &'a Value {
+    let mut rows = rows(results).iter();
+    let found = rows.find(|row| row["mode"] == mode && row["setting"] == setting);
+    found.unwrap_or_else(|| panic!("no row of {mode}, {setting}"))
+}
+
+/// Everything but `--modes` and what the test is about; small and quick.
+const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 2 --iso 100 --cache cache";
+
+#[test]
+fn every_setting_is_judged_timed_and_pictured() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    let printed = place.done(&format!("{SMALL} --modes iso,mip,dvr {device}"));
+    assert!(printed.starts_with("| mode | setting |"), "{printed}");
+    let results = place.json("out/results.json");
+    assert_eq!(results["command"], "compare");
+    assert_eq!(results["volume"]["dims"], serde_json::json!([16, 16, 16]));
+    for mode in ["iso", "mip", "dvr"] {
+        let of_mode = rows(&results).iter().filter(|row| row["mode"] == mode);
+        assert!(of_mode.clone().count() >= 8, "{mode}");
+        for row in of_mode {
+            let name = &row["setting"];
+            assert_eq!(row["failure"], Value::Null, "{name}");
+            assert_eq!(row["times_ms"]["repeats"], 2, "{name}");
+            for clock in ["frame", "render"] {
+                let spread = &row["times_ms"][clock];
+                let [least, median] = ["min", "median"].map(|key| spread[key].as_f64().unwrap());
+                assert!(0.0 < least && least <= median, "{name}: {spread}");
+                assert!(spread["mad"].as_f64().unwrap() >= 0.0, "{name}");
+            }
+            assert!(!row["passes"].as_array().unwrap().is_empty(), "{name}");
+            assert_eq!(row["counts"]["rays"], 1600, "{name}");
+            assert!(
+                row["memory"]["device_bytes"].as_u64().unwrap() >= 4096,
+                "{name}"
+            );
+            let error = &row["error"];
+            for key in ["rmse", "max", "p99"] {
+                assert!(
+                    error["color"][key].as_f64().unwrap() >= 0.0,
+                    "{name}: {key}"
+                );
+            }
+            assert!(error["ssim"].as_f64().unwrap() <= 1.0, "{name}");
+            assert!(error["flip"].as_f64().unwrap() >= 0.0, "{name}");
+            assert_eq!(error["depth"].is_null(), mode != "iso", "{name}");
+            assert_eq!(error["value"].is_null(), mode != "mip", "{name}");
+            for file in ["png", "exr", "error_png", "error_exr"] {
+                let file = row["files"][file].as_str().unwrap();
+                assert!(place.path(&format!("out/{file}")).is_file(), "{file}");
+            }
+        }
+    }
+    // Exact casting misses nothing; plain steps of two voxels do, and are told so.
+    let exact = &row(&results, "iso", "exact")["error"]["depth"];
+    assert_eq!((&exact["missed"], &exact["extra"]), (&0.into(), &0.into()));
+    assert!(exact["reference_hits"].as_u64().unwrap() > 100);
+    let coarse = row(&results, "dvr", "riemann, step 1")["error"]["color"]["rmse"].as_f64();
+    let fine = row(&results, "dvr", "adaptive:1e-4")["error"]["color"]["rmse"].as_f64();
+    assert!(fine < coarse, "{fine:?} {coarse:?}");
+
+    let csv = fs::read_to_string(place.path("out/results.csv")).unwrap();
+    assert_eq!(csv.lines().count(), rows(&results).len() + 1);
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    for row in rows(&results) {
+        let name = row["setting"].as_str().unwrap();
+        assert!(page.contains(name), "{name}");
+    }
+    assert!(page.contains("angioray compare ball.nrrd -o out"));
+}
+
+/// The display pixels of a PNG, 0..1.
+fn pixels(path: &Path) -> Vec<[f64; 3]> {
+    let file = std::io::BufReader::new(fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    let pixels = bytes[..info.buffer_size()].chunks_exact(info.color_type.samples());
+    pixels
+        .map(|p| [p[0], p[1], p[2]].map(|c| f64::from(c) / 255.0))
+        .collect()
+}
+
+#[test]
+fn the_figures_are_those_of_the_pictures() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.done(&format!("{SMALL} --modes mip {device}"));
+    let results = place.json("out/results.json");
+    let truth = pixels(&place.path("out/pictures/mip-00-reference.png"));
+    let mut wrong = 0;
+    for row in rows(&results) {
+        let file = row["files"]["png"].as_str().unwrap();
+        let picture = pixels(&place.path(&format!("out/{file}")));
+        let differences = truth.iter().zip(&picture);
+        let differences = differences.flat_map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()));
+        let most = differences.fold(0.0, f64::max);
+        // Both pictures are rounded to 255 levels.
+        let told = row["error"]["color"]["max"].as_f64().unwrap();
+        assert!(
+            (told - most).abs() <= 1.01 / 255.0,
+            "{}: {told} {most}",
+            row["setting"]
+        );
+        wrong += usize::from(most > 2.0 / 255.0);
+    }
+    assert!(wrong > 0, "no setting was wrong: nothing was tested");
+}
+
+#[test]
+fn the_reference_is_computed_once() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    let line = format!("{SMALL} --modes iso {device}");
+    place.done(&line);
+    let kept = || {
+        let entries = fs::read_dir(place.path("cache")).unwrap();
+        let files = entries.map(|entry| entry.unwrap());
+        let files = files.map(|file| (file.path(), file.metadata().unwrap().modified().unwrap()));
+        files.collect::<Vec<_>>()
+    };
+    let (first, figures) = (kept(), place.json("out/results.json"));
+    assert_eq!(first.len(), 1);
+    place.done(&line);
+    assert_eq!(kept(), first);
+    let again = place.json("out/results.json");
+    for (a, b) in rows(&figures).iter().zip(rows(&again)) {
+        assert_eq!(a["error"], b["error"], "{}", a["setting"]);
+        assert_eq!(a["counts"], b["counts"], "{}", a["setting"]);
+    }
+    place.done(&format!("{line} --azimuth 10"));
+    assert_eq!(kept().len(), 2);
+}
+
+#[test]
+fn settings_come_from_a_file_and_from_flags() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.write(
+        "steps.toml",
+        "[[setting]]\nname = 'coarse & plain'\nstep = 4\nprobe = 'off'\n\
+         [[setting]]\nname = 'only mip'\nmodes = ['mip']\nsampling = 'exact'\n",
+    );
+    place.done(&format!(
+        "{SMALL} --modes iso,mip --configs steps.toml --step 0.75 {device}"
+    ));
+    let results = place.json("out/results.json");
+    let names: Vec<&str> = rows(&results)
+        .iter()
+        .map(|row| row["setting"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "coarse & plain",
+            "as given",
+            "coarse & plain",
+            "only mip",
+            "as given"
+        ]
+    );
+    assert_eq!(rows(&results)[0]["flags"], "--probe off --step 4");
+    assert_eq!(rows(&results)[1]["flags"], "--step 0.75");
+    let missed = |at: usize| {
+        rows(&results)[at]["error"]["depth"]["missed"]
+            .as_u64()
+            .unwrap()
+    };
+    assert!(missed(0) > missed(1), "{} {}", missed(0), missed(1));
+}
+
+#[test]
+fn what_is_done_before_a_failure_is_kept() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    fs::create_dir_all(place.path("out/pictures/mip-02-step-2.png")).unwrap();
+    let output = place.run(&format!("{SMALL} --modes iso,mip {device}"));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("mip-02-step-2.png"),
+        "{}",
+        stderr(&output)
+    );
+    let results = place.json("out/results.json");
+    let timed = |mode: &str| {
+        let rows = rows(&results).iter().filter(|row| row["mode"] == mode);
+        let repeats = rows.map(|row| row["times_ms"]["repeats"].as_u64().unwrap());
+        repeats.collect::<Vec<_>>()
+    };
+    assert_eq!(timed("iso"), [2; 8]);
+    // Judged, not timed yet.
+    assert_eq!(timed("mip"), [0]);
+}
+
+#[test]
+fn wrong_usage_is_refused_before_the_work() {
+    let place = Place::with_ball();
+    place.write("bad.toml", "[[setting]]\nname = 'a'\niso = 3\n");
+    place.write("taken", "");
+    for (line, code, wanted) in [
+        (
+            "compare ball.nrrd",
+            2,
+            "no folder for the comparison was named",
+        ),
+        ("compare -o out", 2, "no volume was named"),
+        ("compare ball.nrrd -o out --mode iso", 2, "--modes iso"),
+        (
+            "compare ball.nrrd -o out --modes iso,iso",
+            2,
+            "'iso' is named twice",
+        ),
+        (
+            "compare ball.nrrd -o out --modes iso,x",
+            2,
+            "'x' is not a mode",
+        ),
+        ("compare ball.nrrd -o out --repeats 0", 2, "times nothing"),
+        (
+            "compare ball.nrrd -o out --configs bad.toml",
+            2,
+            "'iso' says what is seen",
+        ),
+        (
+            "compare ball.nrrd -o out --configs none.toml",
+            1,
+            "none.toml",
+        ),
+        (
+            "compare ball.nrrd -o out --device reference",
+            2,
+            "cannot be compared",
+        ),
+    ] {
+        let said = place.refused(line, code);
+        assert!(said.contains(wanted), "{line}: {said}");
+    }
+    let Some(device) = device() else { return };
+    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 1);
+    assert!(said.contains("cannot make the folder"), "{said}");
+}
+
+#[test]
+fn the_help_has_an_example() {
+    let help = Place::empty().done("compare --help");
+    let (_, examples) = help.split_once("Example:").unwrap();
+    assert!(
+        examples.contains("angioray compare head.nrrd -o head"),
+        "{help}"
+    );
+}

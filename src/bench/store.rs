@@ -26,15 +26,14 @@ pub struct Store {
 }
 
 impl Store {
-    /// Makes the folder where there is none, and from now on lets the work be stopped: units that
-    /// are finished by then stay.
+    /// Makes the folder where there is none. The work ends between two units, or in one, when
+    /// [`stop::asked`] says so.
     ///
     /// # Errors
     /// The folder cannot be made, takes no files, or holds what another run has left unfinished.
     pub fn in_folder(folder: &Path, run: &Run, restart: bool) -> Result<Self> {
         let results = Results::in_folder(folder)?;
         let journal = Journal::open(folder, run, restart)?;
-        stop::listen()?;
         Ok(Self {
             folder: folder.to_owned(),
             results,

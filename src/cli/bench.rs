@@ -11,6 +11,7 @@ use crate::render::Options;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::{FilePath, Switch, Threshold, VolumeOptions};
+use crate::stop;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
@@ -153,6 +154,11 @@ impl BenchArguments {
             (false, true) => Effort::Full,
             (false, false) => Effort::default(),
         };
+        if options.output.is_some() {
+            // Before the device is opened: OpenCL drivers catch signals too, and end the process by
+            // their own unless they were there last.
+            stop::listen()?;
+        }
         let Engine::Device { device, work_group } = Engine::open(&device)? else {
             return Err(Error::usage(
                 "the reference cannot be measured: it is what others are held against",

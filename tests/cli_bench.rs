@@ -6,7 +6,25 @@ mod common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 5] = ["vessels", "traversals", "convergence", "rays", "gradients"];
+const EXPERIMENTS: [&str; 17] = [
+    "vessels",
+    "pareto",
+    "traversals",
+    "convergence",
+    "rays",
+    "gradients",
+    "b1",
+    "b2",
+    "b3",
+    "b8",
+    "b9",
+    "b10",
+    "b13",
+    "b15",
+    "b16",
+    "b17",
+    "b18",
+];
 
 #[test]
 fn the_help_lists_every_experiment_and_has_an_example() {
@@ -32,6 +50,11 @@ fn wrong_usage_says_what_there_is() {
         ("bench rays --rays 0", "measures nothing"),
         ("bench vessels --quick --full", "cannot be used with"),
         ("bench vessels --device reference", "cannot be measured"),
+        ("bench b1 --iso 3", "no effect without a volume"),
+        ("bench b1 ball.nrrd --iso 3x", "not a value"),
+        ("bench rays --protocol orbit", "times no frames"),
+        ("bench b1 --protocol still", "not a protocol"),
+        ("bench b1 --restart", "no effect without '--output'"),
     ] {
         let said = place.refused(line, 2);
         assert!(said.contains(wanted), "{line}: {said}");
@@ -101,7 +124,10 @@ fn vessels_end_in_a_table_and_leave_it_as_files() {
     assert!(csv.contains(&format!(",{share},")), "{share}");
     let of = place.path("out/first");
     let files = std::fs::read_dir(of).unwrap().count();
-    assert_eq!(files, 2, "something temporary is left");
+    assert_eq!(files, 3, "something temporary is left");
+    let page = std::fs::read_to_string(place.path("out/first/report.html")).unwrap();
+    assert!(page.contains("angioray bench vessels ball.nrrd --quick"));
+    assert!(page.contains("step 0.5, regula-falsi:5, probe"));
 }
 
 #[test]

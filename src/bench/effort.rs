@@ -10,6 +10,14 @@ pub enum Effort {
 }
 
 impl Effort {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Usual => "usual",
+            Self::Full => "full",
+        }
+    }
+
     /// Width and height of the pictures.
     pub fn side_px(self) -> u32 {
         match self {

@@ -9,39 +9,110 @@ mod compare;
 pub mod convergence;
 mod effort;
 mod experiments;
+mod journal;
+mod page;
+mod protocol;
 mod results;
 mod specimen;
+mod store;
 mod verdict;
+mod ways;
 
 pub use effort::Effort;
 pub use experiments::EXPERIMENTS;
-pub use results::Results;
+pub use journal::Run;
+pub use protocol::Protocol;
 pub use specimen::Specimen;
+pub use store::Store;
 pub use verdict::{Judge, Met, Verdict};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use crate::error::{Error, Result};
-use crate::frame::Wanted;
+use crate::frame::{Frame, Wanted};
 use crate::gpu::Device;
 use crate::measure::{Times, interleaved};
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{Options, Renderer};
-use crate::report::Table;
+use crate::report::{Section, Table};
 use crate::scene::Scene;
 
 /// What an experiment is given to work with.
 pub struct Bench<'a> {
+    pub experiment: &'static Experiment,
+    /// The line that runs it again.
+    pub command: String,
     pub device: &'a Device,
     pub options: Options,
     pub effort: Effort,
+    /// The user's choice.
+    pub protocol: Option<Protocol>,
     /// The user's volumes.
     pub specimens: Vec<Specimen>,
     /// How many rays, where the experiment counts rays and the user said so.
     pub rays: Option<u64>,
     pub progress: &'a dyn Progress,
+    /// Where the user wants the results kept.
+    pub store: Option<Store>,
 }
 
 impl Bench<'_> {
+    /// What this run is of: only a run of the same can go on with it.
+    pub fn run(&self) -> Run {
+        let device = self.device.info();
+        let volumes = self.specimens.iter().map(Specimen::identity);
+        let told = |choice: Option<String>| choice.unwrap_or_else(|| "the default".into());
+        Run(vec![
+            ("version", env!("CARGO_PKG_VERSION").into()),
+            ("experiment", self.experiment.name.into()),
+            ("effort", self.effort.name().into()),
+            ("protocol", told(self.protocol.map(|one| one.to_string()))),
+            ("rays", told(self.rays.map(|rays| rays.to_string()))),
+            ("volumes", volumes.collect::<Vec<_>>().join("; ")),
+            (
+                "device",
+                format!("{}, {}, {}", device.name, device.platform, device.driver),
+            ),
+            ("work group", format!("{:?}", self.options.work_group)),
+        ])
+    }
+
+    /// A piece of work that is done once: computed, and kept where the user wants results kept; or
+    /// taken from there, where a run that was stopped had finished it. `key` names it among all of
+    /// the experiment.
+    ///
+    /// # Errors
+    /// Those of `compute`; the disk; stopped, where the user asked for it.
+    fn unit<T: Serialize + DeserializeOwned>(
+        &self,
+        key: &str,
+        compute: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        match &self.store {
+            Some(store) => store.unit(key, compute),
+            None => compute(),
+        }
+    }
+
+    /// Leaves the rows so far where the user wants results kept: what fails or is stopped later
+    /// does not take them along.
+    ///
+    /// # Errors
+    /// The disk.
+    fn so_far(&self, outcome: &Outcome) -> Result<()> {
+        match &self.store {
+            Some(store) => store.so_far(self, outcome),
+            None => Ok(()),
+        }
+    }
+
+    /// How frames are timed.
+    fn protocol(&self) -> Protocol {
+        self.protocol.unwrap_or_default()
+    }
+
     fn octree(&self, specimen: &Specimen) -> Result<Octree> {
         Octree::build(&specimen.volume, Leaf::default(), self.progress)
     }
@@ -52,10 +123,11 @@ impl Bench<'_> {
 
     /// What times stand for, for the findings.
     fn timed(&self) -> String {
-        let (side_px, repeats) = (self.effort.side_px(), self.effort.repeats());
+        let side_px = self.effort.side_px();
         format!(
-            "times are the least and the median of {repeats} repeats in turn of pictures of \
-             {side_px}x{side_px} pixels, on {}; ratios are the medians of each repeat's own",
+            "times are {}: pictures of {side_px}x{side_px} pixels unless told otherwise, on {}; \
+             ratios are the medians of each round's own",
+            self.protocol().told(self.effort),
             self.device.info().name
         )
     }
@@ -63,20 +135,50 @@ impl Bench<'_> {
     /// How long the device takes for each of `scenes`: pictures for display, of which nothing else
     /// is asked.
     fn times(&self, renderer: &mut Renderer, scenes: &[Scene]) -> Result<Vec<Times>> {
-        let wanted = Wanted {
-            display: true,
-            ..Wanted::default()
-        };
-        let repeats = self.effort.repeats();
-        let renderings = scenes.len() * (repeats + 1);
-        self.progress.begin("timing", renderings as u64);
-        let times = interleaved(scenes, repeats, |scene| {
+        self.times_under(self.protocol(), scenes, |scene, azimuth_deg| {
+            display_ms(renderer, scene, azimuth_deg)
+        })
+    }
+
+    /// How long each of `settings` takes, in turn: `once` gives the ms of a frame whose camera has
+    /// turned by so many degrees ([`display_ms`]).
+    fn times_under<S>(
+        &self,
+        protocol: Protocol,
+        settings: &[S],
+        mut once: impl FnMut(&S, f64) -> Result<f64>,
+    ) -> Result<Vec<Times>> {
+        let frames = protocol.frames(self.effort);
+        self.progress
+            .begin("timing", (settings.len() * (frames + 1)) as u64);
+        let mut renderings = 0;
+        let times = interleaved(settings, frames, |setting| {
+            if let Some(store) = &self.store {
+                store.check_stop()?;
+            }
             self.progress.advance(1);
-            Ok(renderer.render(scene, wanted)?.render_ms)
+            let round = renderings / settings.len();
+            renderings += 1;
+            once(setting, protocol.azimuth_deg(self.effort, round))
         });
         self.progress.end();
         times
     }
+}
+
+/// The device time of a picture for display, of which nothing else is asked, its camera turned.
+fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Result<f64> {
+    let wanted = Wanted {
+        display: true,
+        ..Wanted::default()
+    };
+    let rendering = if azimuth_deg == 0.0 {
+        renderer.render(scene, wanted)?
+    } else {
+        let (center_world, _) = renderer.volume().bounding_sphere();
+        renderer.render(&protocol::turned(scene, center_world, azimuth_deg)?, wanted)?
+    };
+    Ok(rendering.render_ms)
 }
 
 /// What an experiment found.
@@ -84,8 +186,46 @@ pub struct Outcome {
     pub table: Table,
     /// What the table shows, a sentence each.
     pub findings: Vec<String>,
+    /// Of the page, before its table: a volume or a picture each.
+    pub sections: Vec<Section>,
+    pub pictures: Vec<Shot>,
     /// Why the experiment failed: what must hold does not.
     pub failure: Option<String>,
+}
+
+impl Outcome {
+    /// With an empty table.
+    pub fn of(table: Table) -> Self {
+        Self {
+            table,
+            findings: Vec::new(),
+            sections: Vec::new(),
+            pictures: Vec::new(),
+            failure: None,
+        }
+    }
+}
+
+/// A picture that belongs to the findings.
+pub struct Shot {
+    /// The section of the page in which it is shown.
+    pub section: String,
+    /// What it is called there.
+    pub label: String,
+    /// What is seen, a line.
+    pub caption: String,
+    /// With its display plane.
+    pub frame: Frame,
+}
+
+impl Shot {
+    /// The name of its file.
+    pub fn file(&self) -> String {
+        let name = format!("{} {}", self.section, self.label);
+        let words = name.split(|c: char| !(c.is_alphanumeric() || c == '.'));
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+        words.join("-") + ".png"
+    }
 }
 
 /// A measurement that anyone can repeat by its name.
@@ -97,6 +237,8 @@ pub struct Experiment {
     pub takes_volumes: bool,
     /// Whether [`Bench::rays`] is.
     pub counts_rays: bool,
+    /// Whether [`Bench::protocol`] is.
+    pub times_frames: bool,
     pub run: fn(&Bench) -> Result<Outcome>,
 }
 

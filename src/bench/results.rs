@@ -6,12 +6,15 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use crate::error::{Error, Result};
+use crate::frame::{self, Encoding, Format};
 use crate::output::{check_writable, write_atomically};
 
-use super::{Bench, Experiment, Outcome};
+use super::page::report;
+use super::{Bench, Outcome};
 
-/// `results.csv` and `results.json` in one folder.
+/// `results.csv` and `results.json` in one folder; in the end pictures and `report.html` beside them.
 pub struct Results {
+    folder: PathBuf,
     csv: PathBuf,
     json: PathBuf,
 }
@@ -25,6 +28,7 @@ impl Results {
         std::fs::create_dir_all(folder)
             .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
         let results = Self {
+            folder: folder.to_owned(),
             csv: folder.join("results.csv"),
             json: folder.join("results.json"),
         };
@@ -33,17 +37,21 @@ impl Results {
         Ok(results)
     }
 
+    /// Writes the table; `finished` tells whether it is whole.
+    ///
     /// # Errors
     /// The disk.
-    pub fn write(&self, bench: &Bench, experiment: &Experiment, outcome: &Outcome) -> Result<()> {
+    pub fn write(&self, bench: &Bench, outcome: &Outcome, finished: bool) -> Result<()> {
         let device = bench.device.info();
         let effort = bench.effort;
         let document = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "command": "bench",
-            "experiment": experiment.name,
+            "experiment": bench.experiment.name,
+            "finished": finished,
             "size": [effort.side_px(), effort.side_px()],
             "repeats": effort.repeats(),
+            "protocol": bench.protocol().name(),
             "device": {
                 "name": device.name,
                 "platform": device.platform,
@@ -57,9 +65,22 @@ impl Results {
         write_text(&self.json, &format!("{document:#}\n"))
     }
 
-    /// The files, for the user.
-    pub fn paths(&self) -> [&Path; 2] {
-        [&self.csv, &self.json]
+    /// Writes everything, and gives the files.
+    ///
+    /// # Errors
+    /// The disk.
+    pub fn write_all(&self, bench: &Bench, outcome: &Outcome) -> Result<Vec<PathBuf>> {
+        self.write(bench, outcome, true)?;
+        let mut files = vec![self.csv.clone(), self.json.clone()];
+        for picture in &outcome.pictures {
+            let path = self.folder.join(picture.file());
+            frame::write(&path, &picture.frame, &Encoding::new(Format::Png), &[])?;
+            files.push(path);
+        }
+        let page = self.folder.join("report.html");
+        report(bench, outcome, &self.folder)?.write(&page)?;
+        files.push(page);
+        Ok(files)
     }
 }
 

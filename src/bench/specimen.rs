@@ -6,7 +6,9 @@ use rand_pcg::Pcg64;
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::scene::{Emission, Knot, Picture, Rgb, Scene, SceneOptions, Subject, TransferFunction};
+use crate::scene::{
+    Emission, Knot, Picture, Rgb, Scene, SceneOptions, Setting, Subject, TransferFunction,
+};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };
@@ -30,7 +32,29 @@ impl Specimen {
     /// # Errors
     /// What the text says is wrong, or cannot be of this volume.
     pub(super) fn scene(&self, side_px: u32, options: &str) -> Result<Scene> {
-        let text = format!("{}size = [{side_px}, {side_px}]\n{options}", Self::VIEW);
+        self.resolved(&Self::viewed(side_px, options))
+    }
+
+    /// The same scene, its rays followed by a setting.
+    pub(super) fn scene_by(&self, side_px: u32, options: &str, setting: &Setting) -> Result<Scene> {
+        let seen = Self::parsed(&Self::viewed(side_px, options))?;
+        self.resolved_options(setting.over(&seen))
+    }
+
+    fn viewed(side_px: u32, options: &str) -> String {
+        format!("{}size = [{side_px}, {side_px}]\n{options}", Self::VIEW)
+    }
+
+    fn parsed(text: &str) -> Result<SceneOptions> {
+        SceneOptions::parse(text, "the experiment's scene")
+    }
+
+    /// The scene that the whole text of a scene file makes of this volume.
+    pub(super) fn resolved(&self, text: &str) -> Result<Scene> {
+        self.resolved_options(Self::parsed(text)?)
+    }
+
+    fn resolved_options(&self, options: SceneOptions) -> Result<Scene> {
         let (center_world, radius_mm) = self.volume.bounding_sphere();
         let subject = Subject {
             center_world,
@@ -39,8 +63,7 @@ impl Specimen {
             otsu: self.iso,
             suggested_iso: self.iso,
         };
-        let options = SceneOptions::parse(&text, "the experiment's scene")?.checked()?;
-        Ok(options.resolve(&subject)?.scene)
+        Ok(options.checked()?.resolve(&subject)?.scene)
     }
 
     /// The surface at [`Specimen::iso`], unshaded, so that casts are what is timed and not normals.
@@ -62,15 +85,31 @@ impl Specimen {
     /// Emission and absorption: transparent up to the iso value, opacity rising to a half of a voxel's
     /// path at the largest value.
     pub(super) fn emission(&self, side_px: u32) -> Result<Scene> {
-        let unit_length_mm = self.volume.geometry().smallest_spacing_mm();
-        let knot = |value, opacity| Knot {
-            value,
-            color: Rgb([0.9, 0.6, 0.4]),
-            opacity,
-        };
         let most = self.volume.range().max.max(self.iso);
-        let transfer =
-            TransferFunction::new(vec![knot(self.iso, 0.0), knot(most, 0.5)], unit_length_mm)?;
+        self.medium(side_px, &[(self.iso, 0.0), (most, 0.5)])
+    }
+
+    /// Emission and absorption of one colour: `knots` are values (physical) and the opacities of a
+    /// voxel's path there, ascending.
+    pub(super) fn medium(&self, side_px: u32, knots: &[(f64, f64)]) -> Result<Scene> {
+        let colored = |&(value, opacity)| (value, [0.9, 0.6, 0.4], opacity);
+        let knots: Vec<_> = knots.iter().map(colored).collect();
+        self.colored_medium(side_px, &knots)
+    }
+
+    /// As [`Specimen::medium`], each knot with a colour of its own, linear light.
+    pub(super) fn colored_medium(
+        &self,
+        side_px: u32,
+        knots: &[(f64, [f64; 3], f64)],
+    ) -> Result<Scene> {
+        let unit_length_mm = self.volume.geometry().smallest_spacing_mm();
+        let knots = knots.iter().map(|&(value, color, opacity)| Knot {
+            value,
+            color: Rgb(color),
+            opacity,
+        });
+        let transfer = TransferFunction::new(knots.collect(), unit_length_mm)?;
         let mut scene = self.scene(side_px, "mode = 'dvr'\n")?;
         scene.picture = Picture::Emission(Emission::of(transfer));
         Ok(scene)
@@ -132,13 +171,41 @@ impl Specimen {
     /// # Errors
     /// Not enough memory.
     pub(super) fn phantom(kind: PhantomKind) -> Result<Self> {
-        let dims = Dims::new([u64::from(kind.default_size()); 3])?;
-        let spec = PhantomSpec::new(kind, dims);
+        let phantom = Self::sized(kind, kind.default_size())?;
         Ok(Self {
             name: format!("{kind} phantom"),
+            ..phantom
+        })
+    }
+
+    /// A phantom of so many voxels along each side, its surface half way.
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(super) fn sized(kind: PhantomKind, side: u32) -> Result<Self> {
+        let dims = Dims::new([u64::from(side); 3])?;
+        let spec = PhantomSpec::new(kind, dims);
+        Ok(Self {
+            name: format!("{kind} phantom {side}"),
             volume: phantom(&spec)?.volume,
             iso: spec.values().at(0.5),
         })
+    }
+
+    /// The volume by its content, and where it is looked at: what tells it from others.
+    pub(super) fn identity(&self) -> String {
+        let volume = &self.volume;
+        let (dims, kind) = (volume.dims(), volume.voxels().voxel_type().name());
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(format!("{:?} {:?}", volume.geometry(), volume.rescale()).as_bytes());
+        hasher.update(volume.voxels().bytes());
+        let content = hasher.finalize().to_hex();
+        format!(
+            "{} ({dims} {kind}, iso {}, content {})",
+            self.name,
+            self.iso,
+            &content[..16]
+        )
     }
 
     /// # Errors

@@ -4,17 +4,19 @@ use std::path::Path;
 
 use clap::builder::StyledStr;
 
-use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Results, Specimen};
+use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::render::Options;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
-use crate::scene::{FilePath, Switch, VolumeOptions};
+use crate::scene::{FilePath, Switch, Threshold, VolumeOptions};
+use crate::stop;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
 use super::progress::Bars;
+use super::repeat::command_line;
 use super::scene::SceneArgument;
 use super::terminal::{message, note, to_stdout};
 
@@ -25,6 +27,7 @@ use super::terminal::{message, note, to_stdout};
 #[command(after_help = "Example:
   angioray bench vessels
   angioray bench vessels head.nrrd cta.mha -o results --full
+  angioray bench b1 head.nrrd --iso 50% --protocol orbit -o results
   angioray bench traversals head_256x256x256_uint8.raw.gz")]
 pub struct BenchArguments {
     #[command(flatten)]
@@ -44,20 +47,36 @@ group! {
         #[arg(value_name = "EXPERIMENT")]
         experiment: String,
 
-        /// Volumes that are measured too, at the iso value that the histogram suggests; a
-        /// headerless one by what its name says, such as head_256x256x256_uint8.raw.gz
+        /// Volumes that are measured, in most experiments in place of a phantom; a headerless one
+        /// by what its name says, such as head_256x256x256_uint8.raw.gz
         #[arg(value_name = "VOLUME")]
         volumes: Vec<FilePath>,
+
+        /// The value at which the volumes are looked at: a number, a share of the value range such
+        /// as 50%, or otsu [default: suggested by each one's histogram]
+        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        iso: Threshold,
+
+        /// How frames are timed: static, the camera where it is; or orbit, once around the volume
+        /// in 36 frames (12 with --quick) [default: static; b15: both]
+        #[arg(long, value_name = "static|orbit")]
+        protocol: Protocol,
 
         /// Rays in the experiment rays [default: 10000000; a tenth of it with --quick, ten times as
         /// many with --full]
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         rays: u64,
 
-        /// A folder for the table as results.csv and results.json, unrounded; made where there is
-        /// none
+        /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
+        /// pictures; made where there is none. It fills as the work goes on: the same command goes
+        /// on where it was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
+
+        /// Forget what a run that was stopped has left in the folder
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on")]
+        restart: Switch,
 
         /// Pictures of 128 pixels a side, 3 repeats [default: 256, 5 repeats]
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
@@ -114,7 +133,19 @@ impl BenchArguments {
         if options.rays == Some(0) {
             return Err(Error::usage("'--rays 0' measures nothing").hint("give a number from 1 on"));
         }
+        if options.protocol.is_some() && !experiment.times_frames {
+            return Err(Error::usage(format!(
+                "'--protocol' has no effect in the experiment '{name}', which times no frames"
+            )));
+        }
+        if options.iso.is_some() && volumes.is_empty() {
+            return Err(Error::usage("'--iso' has no effect without a volume")
+                .hint("name the volumes that are looked at there"));
+        }
         let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
+        if is_on(options.restart) && options.output.is_none() {
+            return Err(Error::usage("'--restart' has no effect without '--output'"));
+        }
         let effort = match (is_on(options.quick), is_on(options.full)) {
             (true, true) => {
                 return Err(Error::usage("'quick' and 'full' do not go together"));
@@ -123,6 +154,11 @@ impl BenchArguments {
             (false, true) => Effort::Full,
             (false, false) => Effort::default(),
         };
+        if options.output.is_some() {
+            // Before the device is opened: OpenCL drivers catch signals too, and end the process by
+            // their own unless they were there last.
+            stop::listen()?;
+        }
         let Engine::Device { device, work_group } = Engine::open(&device)? else {
             return Err(Error::usage(
                 "the reference cannot be measured: it is what others are held against",
@@ -131,21 +167,41 @@ impl BenchArguments {
         };
 
         let bars = Bars::new();
-        let specimens = volumes.iter().map(|FilePath(path)| specimen(path, &bars));
-        let bench = Bench {
+        let mut specimens: Vec<Specimen> = Vec::new();
+        for FilePath(path) in &volumes {
+            let mut specimen = specimen(path, options.iso, &bars)?;
+            specimen.check()?;
+            let alike = |other: &&Specimen| other.name.split(" (").next() == Some(&specimen.name);
+            let alike = specimens.iter().filter(alike).count();
+            if alike > 0 {
+                specimen.name = format!("{} ({})", specimen.name, alike + 1);
+            }
+            specimens.push(specimen);
+        }
+        let mut bench = Bench {
+            experiment,
+            command: command_line(),
             device: &device,
             options: Options {
                 work_group: work_group.map(Into::into),
             },
             effort,
-            specimens: specimens.collect::<Result<_>>()?,
+            protocol: options.protocol,
+            specimens,
             rays: options.rays,
             progress: &bars,
+            store: None,
         };
-        let results = options
-            .output
-            .map(|FilePath(path)| Results::in_folder(&path));
-        let results = results.transpose()?;
+        if let Some(FilePath(folder)) = &options.output {
+            let store = Store::in_folder(folder, &bench.run(), is_on(options.restart))?;
+            if store.known_units() > 0 {
+                note(format_args!(
+                    "going on with what was measured before: {} units of work",
+                    store.known_units()
+                ));
+            }
+            bench.store = Some(store);
+        }
         message(format_args!("bench {name} on {}", device.info().name));
         let outcome = (experiment.run)(&bench)?;
         to_stdout(|out| {
@@ -155,9 +211,8 @@ impl BenchArguments {
                 .iter()
                 .try_for_each(|sentence| writeln!(out, "- {sentence}"))
         })?;
-        if let Some(results) = results {
-            results.write(&bench, experiment, &outcome)?;
-            for path in results.paths() {
+        if let Some(store) = &bench.store {
+            for path in store.finish(&bench, &outcome)? {
                 message(format_args!("wrote {}", path.display()));
             }
         }
@@ -168,25 +223,31 @@ impl BenchArguments {
     }
 }
 
-/// A volume file, looked at where the histogram suggests.
-fn specimen(path: &Path, progress: &dyn Progress) -> Result<Specimen> {
+/// A volume file, looked at where the user says or the histogram suggests.
+fn specimen(path: &Path, iso: Option<Threshold>, progress: &dyn Progress) -> Result<Specimen> {
     let source = Source::of(&VolumeOptions {
         volume: Some(FilePath(path.to_owned())),
         ..VolumeOptions::default()
     })?;
     let loaded = source.load(progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let told = iso.map(|iso| iso.resolve(&loaded.subject));
     let specimen = Specimen {
         // Without what tells the format.
         name: name.split('.').next().unwrap_or_default().to_owned(),
         volume: loaded.volume,
-        iso: loaded.subject.suggested_iso,
+        iso: told.unwrap_or(loaded.subject.suggested_iso),
     };
-    note(format_args!(
-        "{}: iso = {}, suggested by the histogram",
-        specimen.name,
-        concise(specimen.iso)
-    ));
-    specimen.check()?;
+    if !matches!(iso, Some(Threshold::Value(_))) {
+        let by = match iso {
+            Some(iso) => iso.to_string(),
+            None => "suggested by the histogram".to_owned(),
+        };
+        note(format_args!(
+            "{}: iso = {}, {by}",
+            specimen.name,
+            concise(specimen.iso)
+        ));
+    }
     Ok(specimen)
 }

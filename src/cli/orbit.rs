@@ -28,7 +28,7 @@ use super::stats::{
     VERSION, ViewStats, VolumeStats,
 };
 use super::terminal::{message, note};
-use super::tolerance::{SEED, ToleranceStats, note_of};
+use super::tolerance::{SEED, ToleranceStats};
 
 /// Render a volume from all around: a picture per frame, or an animation
 #[derive(clap::Args)]
@@ -495,7 +495,7 @@ fn choose(
         .collect();
     let (mut choice, checks) = choose_for_views(&tasks, renderer, bars)?;
     choice.met &= checks.iter().all(|check| check.met);
-    note(note_of(&choice));
+    note(&choice);
     let verified: Vec<ViewStats> = checks
         .iter()
         .map(|check| ViewStats {

@@ -1,53 +1,49 @@
-//! `--max-error`: what was chosen, for the user and for the statistics.
+//! `--max-error`: what was chosen, for the statistics.
 
 use serde::Serialize;
 
-use crate::scene::options::concise;
-use crate::scene::{ErrorBound, ErrorMetric};
-use crate::tolerance::{CONFIDENCE, Choice};
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::scene::{Camera, ErrorBound, SceneOptions};
+use crate::tolerance::{self, CONFIDENCE, Choice, Task};
+
+use super::engine::Caster;
+use super::load::Loaded;
+use super::progress::Bars;
+use super::terminal::note;
 
 /// Of the random tiles: the same in every run.
-pub const SEED: u64 = 1;
+const SEED: u64 = 1;
 
-/// One sentence about a choice.
-pub fn note_of(choice: &Choice) -> String {
-    let Choice {
+/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
+/// what all errors are taken against: it needs no choice, whatever the bound. Told to the user.
+pub fn choose(
+    bound: ErrorBound,
+    options: &SceneOptions,
+    loaded: &Loaded,
+    wanted: Wanted,
+    elsewhere: &[Camera],
+    caster: &mut Caster,
+    bars: &Bars,
+) -> Result<Option<Choice>> {
+    let Caster::Device { renderer, .. } = caster else {
+        note(format_args!(
+            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+        ));
+        return Ok(None);
+    };
+    let task = Task {
+        volume: &loaded.volume,
+        subject: &loaded.subject,
+        options,
         bound,
-        setting,
-        verified,
-        cost,
-        ..
-    } = choice;
-    let metric = bound.metric();
-    let limit = match metric {
-        ErrorMetric::Psnr => "at least",
-        _ => "at most",
+        wanted,
+        seed: SEED,
+        elsewhere,
     };
-    let outcome = if choice.met {
-        format!("chose {}", setting.flags())
-    } else {
-        format!("nothing keeps it, {} is used", setting.flags())
-    };
-    let tiles = match (verified.tiles, choice.met) {
-        (0, _) => "every pixel was held against the reference".to_owned(),
-        (tiles, true) => format!("verified on {tiles} fresh tiles"),
-        (tiles, false) => format!("as {tiles} fresh tiles have it"),
-    };
-    format!(
-        "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
-         {tiles}; {} settings tried in {:.1} s",
-        concise(bound.bound()),
-        concise(rounded(choice.estimate)),
-        concise(rounded(choice.upper)),
-        100.0 * CONFIDENCE,
-        choice.tried.len(),
-        cost.ms / 1e3,
-    )
-}
-
-/// To three digits: more would not be known.
-fn rounded(figure: f64) -> f64 {
-    format!("{figure:.2e}").parse().unwrap_or(figure)
+    let choice = tolerance::choose(&task, renderer, bars)?;
+    note(&choice);
+    Ok(Some(choice))
 }
 
 /// A choice in the statistics. Errors are in the metric's own unit, `null` where there is no number
@@ -69,6 +65,7 @@ pub struct ToleranceStats {
 
 #[derive(Serialize)]
 struct VerifiedStats {
+    views: usize,
     tiles: usize,
     rays: usize,
 }
@@ -106,6 +103,7 @@ impl ToleranceStats {
             upper: choice.upper,
             confidence: CONFIDENCE,
             verified: VerifiedStats {
+                views: choice.verified.views,
                 tiles: choice.verified.tiles,
                 rays: choice.verified.rays,
             },

@@ -43,6 +43,14 @@ impl Counts {
             undecided: frame.undecided(),
         }
     }
+
+    pub fn samples_per_ray(&self) -> f64 {
+        self.samples as f64 / self.rays as f64
+    }
+
+    pub fn nodes_per_ray(&self) -> f64 {
+        self.nodes as f64 / self.rays as f64
+    }
 }
 
 impl std::iter::Sum for Counts {

@@ -1,15 +1,23 @@
 //! Timings that can be compared although the machine is shared: every setting once a round.
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::Result;
+use crate::frame::percentile;
 
 /// What the repeats of one setting took.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Times {
     /// One a round, ms.
     rounds: Vec<f64>,
 }
 
 impl Times {
+    /// 19 of 20 rounds take no longer than this, ms.
+    pub fn p95_ms(&self) -> f64 {
+        percentile(&mut self.rounds.clone(), 95).unwrap_or(f64::NAN)
+    }
+
     /// What the setting takes when nothing else disturbs it.
     pub fn min_ms(&self) -> f64 {
         self.rounds.iter().copied().fold(f64::INFINITY, f64::min)

@@ -125,6 +125,11 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// What is looked at.
+    pub fn volume(&self) -> &'a Volume {
+        self.volume
+    }
+
     /// Casts a scene; computes only the planes that are wanted.
     ///
     /// # Errors

@@ -4,10 +4,12 @@ use std::fmt::Write;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{Markup, html};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// What stands in one place of a table.
-#[derive(Debug, Clone, PartialEq)]
+/// What stands in one place of a table; as JSON a string, a number or `null`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
 pub enum Cell {
     Text(String),
     Number(f64),

@@ -3,7 +3,7 @@
 use super::super::convergence::{ORDERS, Smooth, errors, halvings, observed_order};
 use super::super::{Bench, Experiment, Outcome};
 use crate::error::Result;
-use crate::report::{Shown, Table};
+use crate::report::{Cell, Shown, Table};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "convergence",
@@ -11,6 +11,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             which the field is linear and on one along which it is a cubic",
     takes_volumes: false,
     counts_rays: false,
+    times_frames: false,
     run,
 };
 
@@ -27,30 +28,31 @@ const COLUMNS: [(&str, &str, Shown); 9] = [
 ];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut table = Table::new(&COLUMNS);
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
     for smooth in [Smooth::ramp()?, Smooth::cubic()?] {
         for (method, order) in ORDERS {
-            let errors = errors(bench.device, &smooth, method, &halvings())?;
-            table.push(vec![
-                smooth.name.into(),
-                method.to_string().into(),
-                order.into(),
-                observed_order(&errors.color, order).into(),
-                observed_order(&errors.opacity, order).into(),
-                errors.color[0].into(),
-                errors.color[2].into(),
-                errors.color[4].into(),
-                errors.color[6].into(),
-            ]);
+            let row = bench.unit(&format!("{}/{method}", smooth.name), || {
+                let errors = errors(bench.device, &smooth, method, &halvings())?;
+                Ok::<Vec<Cell>, _>(vec![
+                    smooth.name.into(),
+                    method.to_string().into(),
+                    order.into(),
+                    observed_order(&errors.color, order).into(),
+                    observed_order(&errors.opacity, order).into(),
+                    errors.color[0].into(),
+                    errors.color[2].into(),
+                    errors.color[4].into(),
+                    errors.color[6].into(),
+                ])
+            })?;
+            outcome.table.push(row);
+            bench.so_far(&outcome)?;
         }
     }
-    Ok(Outcome {
-        table,
-        findings: vec![
-            "an order is the slope of the error's logarithm between two steps, one half of the other, \
-             above what rounding leaves; none where the errors are below that at once"
-                .into(),
-        ],
-        failure: None,
-    })
+    outcome.findings.push(
+        "an order is the slope of the error's logarithm between two steps, one half of the other, \
+         above what rounding leaves; none where the errors are below that at once"
+            .into(),
+    );
+    Ok(outcome)
 }

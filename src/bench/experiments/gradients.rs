@@ -9,7 +9,7 @@ use crate::frame::{Frame, Wanted};
 use crate::measure::interleaved;
 use crate::reference;
 use crate::render::Rendering;
-use crate::report::{Shown, Table};
+use crate::report::{Cell, Shown, Table};
 use crate::scene::options::concise;
 use crate::scene::{Gradient, Precomputed, Scene};
 use crate::volume::PhantomKind;
@@ -20,6 +20,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             against its radii, on the volumes named against central differences in double precision",
     takes_volumes: true,
     counts_rays: false,
+    times_frames: false,
     run,
 };
 
@@ -52,15 +53,15 @@ fn ways() -> Result<[(&'static str, Gradient); 7]> {
 }
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome {
-        table: Table::new(&COLUMNS),
-        findings: Vec::new(),
-        failure: None,
-    };
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
     let sphere = Specimen::phantom(PhantomKind::Sphere)?;
-    measure(bench, &sphere, Some(radial), &mut outcome)?;
-    for specimen in &bench.specimens {
-        measure(bench, specimen, None, &mut outcome)?;
+    let named = bench.specimens.iter().map(|specimen| (specimen, None));
+    let sphere = (&sphere, Some(radial as fn(DVec3) -> DVec3));
+    for (specimen, normal) in std::iter::once(sphere).chain(named) {
+        let (rows, finding) = bench.unit(&specimen.name, || measure(bench, specimen, normal))?;
+        rows.into_iter().for_each(|row| outcome.table.push(row));
+        outcome.findings.push(finding);
+        bench.so_far(&outcome)?;
     }
     outcome.findings.push(bench.timed());
     Ok(outcome)
@@ -71,13 +72,12 @@ fn radial(p_world: DVec3) -> DVec3 {
     p_world.normalize_or_zero()
 }
 
-/// Appends a volume's rows; `normal` is the closed form, where there is one.
+/// A volume's rows and what they are of; `normal` is the closed form, where there is one.
 fn measure(
     bench: &Bench,
     specimen: &Specimen,
     normal: Option<fn(DVec3) -> DVec3>,
-    outcome: &mut Outcome,
-) -> Result<()> {
+) -> Result<(Vec<Vec<Cell>>, String)> {
     let wanted = Wanted {
         depth: true,
         normal: true,
@@ -109,9 +109,10 @@ fn measure(
         Some(_) => "radii",
         None => "central, f64",
     };
+    let mut rows = Vec::new();
     for (((name, _), rendering), times_of) in ways.iter().zip(&renderings).zip(&times) {
         let error = normal_error(&truth, &rendering.frame)?;
-        outcome.table.push(vec![
+        rows.push(vec![
             specimen.name.as_str().into(),
             (*name).into(),
             against.into(),
@@ -124,13 +125,13 @@ fn measure(
             times_of.over(&times[0]).into(),
         ]);
     }
-    outcome.findings.push(format!(
+    let finding = format!(
         "{}: at {}, {} normals compared",
         specimen.name,
         concise(specimen.iso),
         normal_error(&truth, &renderings[0].frame)?.compared
-    ));
-    Ok(())
+    );
+    Ok((rows, finding))
 }
 
 /// Replaces the normals of a frame by those of a closed form where its rays hit.

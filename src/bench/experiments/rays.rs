@@ -11,6 +11,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             exact cast held against the reference; fails where one is wrong",
     takes_volumes: false,
     counts_rays: true,
+    times_frames: false,
     run,
 };
 
@@ -53,16 +54,17 @@ fn run(bench: &Bench) -> Result<Outcome> {
         total.borderline
     )];
     findings.extend(report.wrong);
+    let failure = (total.wrong() > 0).then(|| {
+        format!(
+            "{} of {} rays were answered wrong",
+            total.wrong(),
+            total.rays
+        )
+    });
     Ok(Outcome {
-        table,
         findings,
-        failure: (total.wrong() > 0).then(|| {
-            format!(
-                "{} of {} rays were answered wrong",
-                total.wrong(),
-                total.rays
-            )
-        }),
+        failure,
+        ..Outcome::of(table)
     })
 }
 

@@ -1,10 +1,13 @@
 //! The ways through the octree as rivals: the same pictures, at what cost.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::compare::same_picture;
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
-use crate::measure::Times;
+use crate::measure::{Counts, Times};
+use crate::render::Renderer;
 use crate::report::{Shown, Table};
 use crate::scene::{SamplingMethod, Scene, Traverse};
 use crate::volume::PhantomKind;
@@ -15,6 +18,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             on the volumes named, or on the vessel phantom",
     takes_volumes: true,
     counts_rays: false,
+    times_frames: true,
     run,
 };
 
@@ -41,37 +45,32 @@ fn run(bench: &Bench) -> Result<Outcome> {
     } else {
         bench.specimens.as_slice()
     };
-    let mut outcome = Outcome {
-        table: Table::new(&COLUMNS),
-        findings: Vec::new(),
-        failure: None,
-    };
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
     // Of every picture, the logarithms of its ratios to the rival.
     let mut logs = [0.0; Traverse::ALL.len()];
     for specimen in specimens {
         let octree = bench.octree(specimen)?;
         let mut renderer = bench.renderer(specimen, &octree)?;
         for (name, scene) in pictures(specimen, bench.effort.side_px())? {
-            let scenes = Traverse::ALL.map(|traverse| by(&scene, traverse));
-            let frames: Vec<Frame> = scenes
-                .iter()
-                .map(|scene| Ok(renderer.render(scene, Wanted::ALL)?.frame))
-                .collect::<Result<_>>()?;
-            let times = bench.times(&mut renderer, &scenes)?;
-            for (log, times_of) in logs.iter_mut().zip(&times) {
-                *log += times_of.over(&times[place(RIVAL)]).ln();
+            let found = bench.unit(&format!("{}/{name}", specimen.name), || {
+                measure(bench, &mut renderer, &scene)
+            })?;
+            let rival = &found[place(RIVAL)].times;
+            for (log, one) in logs.iter_mut().zip(&found) {
+                *log += one.times.over(rival).ln();
             }
-            let fastest = fastest(times.iter().map(Times::min_ms));
+            let fastest = fastest(found.iter().map(|one| one.times.min_ms()));
             outcome.findings.push(format!(
                 "{}, {name}: {fastest} is the fastest",
                 specimen.name
             ));
-            if !tabulate(&mut outcome.table, specimen, name, &frames, &times) {
+            if !tabulate(&mut outcome.table, specimen, name, &found) {
                 outcome.failure = Some(format!(
                     "{}, {name}: the traversals give different pictures",
                     specimen.name
                 ));
             }
+            bench.so_far(&outcome)?;
         }
     }
     outcome.findings.push(format!(
@@ -123,35 +122,51 @@ fn pictures(specimen: &Specimen, side_px: u32) -> Result<[(&'static str, Scene);
     ])
 }
 
+/// One traversal of one picture.
+#[derive(Serialize, Deserialize)]
+struct Found {
+    times: Times,
+    nodes_per_ray: f64,
+    samples_per_ray: f64,
+    /// Whether the picture is the rival's.
+    same: bool,
+}
+
+/// In the order of [`Traverse::ALL`].
+fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<Found>> {
+    let scenes = Traverse::ALL.map(|traverse| by(scene, traverse));
+    let frames: Vec<Frame> = scenes
+        .iter()
+        .map(|scene| Ok(renderer.render(scene, Wanted::ALL)?.frame))
+        .collect::<Result<_>>()?;
+    let times = bench.times(renderer, &scenes)?;
+    let found = frames.iter().zip(times).map(|(frame, times)| {
+        let counts = Counts::of(frame, &scene.picture);
+        Found {
+            times,
+            nodes_per_ray: counts.nodes_per_ray(),
+            samples_per_ray: counts.samples_per_ray(),
+            same: same_picture(frame, &frames[place(RIVAL)]),
+        }
+    });
+    Ok(found.collect())
+}
+
 /// Appends a picture's rows; gives whether all traversals made the same.
-fn tabulate(
-    table: &mut Table,
-    specimen: &Specimen,
-    picture: &str,
-    frames: &[Frame],
-    times: &[Times],
-) -> bool {
-    let rival = place(RIVAL);
-    let mut all_same = true;
-    for ((traverse, frame), times_of) in Traverse::ALL.iter().zip(frames).zip(times) {
-        let rays = frame.size.pixels() as f64;
-        let a_ray = |counts: &Option<Vec<u32>>| {
-            let counts = counts.iter().flatten();
-            counts.map(|&n| f64::from(n)).sum::<f64>() / rays
-        };
-        let same = same_picture(frame, &frames[rival]);
-        all_same &= same;
+fn tabulate(table: &mut Table, specimen: &Specimen, picture: &str, found: &[Found]) -> bool {
+    let rival = &found[place(RIVAL)].times;
+    for (traverse, one) in Traverse::ALL.iter().zip(found) {
         table.push(vec![
             specimen.name.as_str().into(),
             picture.into(),
             traverse.to_string().into(),
-            times_of.min_ms().into(),
-            times_of.median_ms().into(),
-            times_of.over(&times[rival]).into(),
-            a_ray(&frame.nodes).into(),
-            a_ray(&frame.steps).into(),
-            if same { "yes" } else { "no" }.into(),
+            one.times.min_ms().into(),
+            one.times.median_ms().into(),
+            one.times.over(rival).into(),
+            one.nodes_per_ray.into(),
+            one.samples_per_ray.into(),
+            if one.same { "yes" } else { "no" }.into(),
         ]);
     }
-    all_same
+    found.iter().all(|one| one.same)
 }

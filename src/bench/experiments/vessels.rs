@@ -1,5 +1,7 @@
 //! What fixed steps lose of thin vessels and of real angiograms, and what exact casting costs.
 
+use serde::{Deserialize, Serialize};
+
 use super::super::borderline::Borderline;
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
@@ -18,6 +20,7 @@ pub const EXPERIMENT: Experiment = Experiment {
             four radii and on the volumes named",
     takes_volumes: true,
     counts_rays: false,
+    times_frames: true,
     run,
 };
 
@@ -112,6 +115,7 @@ impl Setting {
 }
 
 /// One volume's figures.
+#[derive(Serialize, Deserialize)]
 struct Measured {
     /// In the order of [`Setting::all`].
     iso: Vec<(DepthError, Times)>,
@@ -124,14 +128,10 @@ struct Measured {
 fn run(bench: &Bench) -> Result<Outcome> {
     let vessels = RADII.map(|radius| Specimen::straight_vessels(radius, VESSELS));
     let vessels: Vec<Specimen> = vessels.into_iter().collect::<Result<_>>()?;
-    let mut outcome = Outcome {
-        table: Table::new(&COLUMNS),
-        findings: Vec::new(),
-        failure: None,
-    };
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
     let mut costs = Costs::default();
     for specimen in vessels.iter().chain(&bench.specimens) {
-        let measured = measure(bench, specimen)?;
+        let measured = bench.unit(&specimen.name, || measure(bench, specimen))?;
         let exact = &tabulate(&mut outcome.table, specimen, &measured);
         costs.add(&measured);
         outcome.findings.push(format!(
@@ -147,6 +147,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 specimen.name, exact.missed, exact.extra
             ));
         }
+        bench.so_far(&outcome)?;
     }
     outcome.findings.extend(costs.findings());
     outcome.findings.push(bench.timed());

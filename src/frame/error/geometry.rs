@@ -1,7 +1,7 @@
 //! The error of a surface: its hits, their depth, their normals.
 
 use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::error::Result;
 
@@ -11,7 +11,7 @@ use crate::frame::Frame;
 
 /// Hits are pixels of finite depth. `mean`, `p99` and `max` are of the absolute difference over
 /// pixels that both hit, in voxels of the smallest spacing. Serialized with both shares.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct DepthError {
     pub reference_hits: u64,
     /// Pixels that only the reference hits.

@@ -1,6 +1,6 @@
 //! The projected value's error.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 
@@ -10,7 +10,7 @@ use crate::frame::Frame;
 
 /// Absolute differences of the value plane over pixels that both cover (colour's alpha > 0), as a
 /// share of the volume's value range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ValueError {
     pub compared: u64,
     /// Pixels that only the reference covers.

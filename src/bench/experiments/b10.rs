@@ -1,0 +1,169 @@
+//! Ruijters and Vilanova 2006, §8: what a change of the transfer function costs before the next
+//! frame.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::ways::Subject;
+use super::super::{Bench, Experiment, Outcome, Specimen};
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::measure::{Times, interleaved};
+use crate::report::{Cell, Shown, Table};
+use crate::scene::{Picture, Scene, Traverse};
+use crate::volume::PhantomKind;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "b10",
+    about: "what a new iso value or transfer function costs: classifying the octree, and the bytes \
+            that go to the device (Ruijters and Vilanova 2006, section 8)",
+    takes_volumes: true,
+    counts_rays: false,
+    times_frames: false,
+    run,
+};
+
+/// The paper's octree of 512³ voxels, on its two devices, ms.
+const PAPER_MS: [f64; 2] = [6.5, 3.5];
+const PAPER_VOXELS: f64 = 512.0 * 512.0 * 512.0;
+
+/// Shares of the value range at which the surface or the medium begins, one after the other.
+const CHANGES: [f64; 5] = [0.5, 0.4, 0.6, 0.3, 0.7];
+
+const COLUMNS: [(&str, &str, Shown); 9] = [
+    ("volume", "volume", Shown::Short),
+    ("change", "what changes", Shown::Short),
+    ("traverse", "traversal", Shown::Short),
+    ("classify_min_ms", "classified in ms, least", Shown::Short),
+    ("classify_median_ms", "median", Shown::Short),
+    (
+        "classify_ns_per_kvoxel",
+        "ns a 1000 voxels",
+        Shown::Fixed(1),
+    ),
+    ("paper_ns_per_kvoxel", "paper", Shown::Fixed(1)),
+    ("uploaded_bytes", "bytes uploaded", Shown::Fixed(0)),
+    ("volume_bytes", "bytes of the volume", Shown::Fixed(0)),
+];
+
+/// One kind of change.
+#[derive(Serialize, Deserialize)]
+struct Changed {
+    what: String,
+    traverse: String,
+    times: Times,
+    /// The most of any change.
+    uploaded_bytes: u64,
+    volume_bytes: u64,
+    voxels: f64,
+}
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
+    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+        let changes = bench.unit(&subject.name, || measure(bench, subject.specimen()?))?;
+        for changed in &changes {
+            let per_kvoxel = 1e9 / changed.voxels;
+            outcome.table.push(vec![
+                subject.name.as_str().into(),
+                changed.what.as_str().into(),
+                changed.traverse.as_str().into(),
+                changed.times.min_ms().into(),
+                changed.times.median_ms().into(),
+                (changed.times.median_ms() * per_kvoxel).into(),
+                (PAPER_MS[0] * 1e9 / PAPER_VOXELS).into(),
+                changed.uploaded_bytes.into(),
+                Cell::from(changed.volume_bytes),
+            ]);
+            if changed.uploaded_bytes >= changed.volume_bytes {
+                outcome.failure = Some(format!(
+                    "{}: a change of the {} uploads {} bytes, as much as the volume's {}",
+                    subject.name, changed.what, changed.uploaded_bytes, changed.volume_bytes
+                ));
+            }
+        }
+        bench.so_far(&outcome)?;
+        let share = |changed: &Changed| changed.uploaded_bytes as f64 / changed.volume_bytes as f64;
+        let most = changes.iter().map(share).fold(0.0, f64::max);
+        outcome.findings.push(format!(
+            "{}: no voxel is uploaded again; what is, is {:.2} % of the volume's bytes at most",
+            subject.name,
+            100.0 * most
+        ));
+    }
+    outcome.findings.push(format!(
+        "the paper needs {} and {} ms for 512x512x512 voxels on its two devices; its figure here is \
+         the slower one a voxel",
+        PAPER_MS[0], PAPER_MS[1]
+    ));
+    outcome.findings.push(
+        "the distance map is made anew with the classes and is part of its time; the other \
+         traversals need the classes alone"
+            .into(),
+    );
+    Ok(outcome)
+}
+
+fn measure(bench: &Bench, specimen: &Specimen) -> Result<Vec<Changed>> {
+    let octree = bench.octree(specimen)?;
+    let mut renderer = bench.renderer(specimen, &octree)?;
+    // Small: what is timed happens before the first ray.
+    let side_px = 32;
+    let mut all = Vec::new();
+    for what in ["iso value", "transfer function"] {
+        for traverse in [Traverse::Hierarchical, Traverse::Distance] {
+            let scenes: Vec<Scene> = CHANGES
+                .iter()
+                .map(|&share| changed(specimen, side_px, what, share, traverse))
+                .collect::<Result<_>>()?;
+            // The volume's own upload is the first frame's.
+            renderer.render(&scenes[0], Wanted::default())?;
+            let mut uploaded_bytes = 0;
+            let rounds = interleaved(&[()], CHANGES.len() * bench.effort.repeats(), {
+                let mut scenes = scenes.iter().cycle();
+                let renderer = &mut renderer;
+                let uploaded_bytes = &mut uploaded_bytes;
+                move |()| {
+                    // A cycle of some scenes has no end.
+                    let Some(scene) = scenes.next() else {
+                        return Ok(f64::NAN);
+                    };
+                    let rendering = renderer.render(scene, Wanted::default())?;
+                    *uploaded_bytes = rendering.uploaded_bytes.max(*uploaded_bytes);
+                    Ok(rendering.classify_ms)
+                }
+            })?;
+            for times in rounds {
+                all.push(Changed {
+                    what: what.into(),
+                    traverse: traverse.to_string(),
+                    times,
+                    uploaded_bytes,
+                    volume_bytes: specimen.volume.voxels().bytes().len() as u64,
+                    voxels: specimen.volume.voxels().len() as f64,
+                });
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn changed(
+    specimen: &Specimen,
+    side_px: u32,
+    what: &str,
+    share: f64,
+    traverse: Traverse,
+) -> Result<Scene> {
+    let range = specimen.volume.range();
+    let mut scene = if what == "iso value" {
+        let mut scene = specimen.surface(side_px)?;
+        if let Picture::Surface { iso, .. } = &mut scene.picture {
+            *iso = range.at(share);
+        }
+        scene
+    } else {
+        specimen.medium(side_px, &[(range.at(share), 0.0), (range.max, 0.5)])?
+    };
+    scene.sampling.traverse = traverse;
+    Ok(scene)
+}

@@ -1,0 +1,107 @@
+//! Yuan 2009, table of §5: frames by the number of clip planes and by the picture's size.
+
+use glam::DVec3;
+
+use super::super::ways::{self, Errors, Found, Subject, Way, run_group};
+use super::super::{Bench, Experiment, Outcome, Specimen};
+use crate::error::Result;
+use crate::scene::{ClipPlane, Scene};
+use crate::volume::PhantomKind;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "b13",
+    about: "frames by the number of clip planes, none of which cuts anything off, and by the size \
+            of the picture (Yuan 2009, table in section 5)",
+    takes_volumes: true,
+    counts_rays: false,
+    times_frames: true,
+    run,
+};
+
+/// Beside the six faces of the volume, which are planes in the paper.
+const PLANES: [usize; 9] = [0, 1, 2, 4, 6, 8, 16, 32, 64];
+/// fps with 6 planes and with 12.
+const PAPER: [(usize, f64); 2] = [(0, 59.4), (6, 57.9)];
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let mut outcome = Outcome::of(ways::table("series", Errors::Light));
+    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+        let planes = run_group(bench, &mut outcome, &subject, "planes", |specimen| {
+            by_planes(bench, specimen)
+        })?;
+        let sizes = run_group(bench, &mut outcome, &subject, "viewport", |specimen| {
+            by_size(bench, specimen)
+        })?;
+        outcome
+            .findings
+            .extend(tell(&subject.name, &planes, &sizes));
+    }
+    outcome.findings.push(
+        "the paper's other figures, 58.6 fps with planes between 6 and 12, 39.7 and 22.3 fps in \
+         larger viewports, are of settings that have no twin here"
+            .into(),
+    );
+    outcome.findings.push(bench.timed());
+    Ok(outcome)
+}
+
+fn by_planes(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
+    let scene = specimen.emission(bench.effort.side_px())?;
+    let ways = PLANES.iter().map(|&count| {
+        let of_paper = PAPER.iter().find(|(planes, _)| *planes == count);
+        let scene = Scene {
+            clip_planes: around(specimen, count)?,
+            ..scene.clone()
+        };
+        let way = Way::new(format!("planes: {count}"), scene);
+        Ok(way.paper_fps(of_paper.map(|(_, fps)| *fps)).same_as(0))
+    });
+    ways.collect()
+}
+
+/// Planes about the volume's bounding sphere, evenly spread, that keep all of it: every ray is cut
+/// by all of them, and none sees less.
+fn around(specimen: &Specimen, count: usize) -> Result<Vec<ClipPlane>> {
+    let (center_world, radius_mm) = specimen.volume.bounding_sphere();
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let planes = (0..count).map(|place| {
+        // A spiral of equal areas (Vogel 1979, on the sphere).
+        let height = 1.0 - 2.0 * (place as f64 + 0.5) / count as f64;
+        let (sin, cos) = (golden * place as f64).sin_cos();
+        let flat = (1.0 - height * height).sqrt();
+        let outward = DVec3::new(flat * cos, flat * sin, height);
+        ClipPlane::new(-outward, outward.dot(center_world) + 1.01 * radius_mm)
+    });
+    planes.collect()
+}
+
+fn by_size(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
+    let side_px = bench.effort.side_px();
+    let ways = [side_px / 2, side_px, side_px * 2].map(|side_px| {
+        let scene = specimen.emission(side_px)?;
+        Ok(Way::new(format!("{side_px}x{side_px}"), scene))
+    });
+    ways.into_iter().collect()
+}
+
+fn tell(volume: &str, planes: &[Found], sizes: &[Found]) -> Vec<String> {
+    let slower = |count: usize| {
+        let place = PLANES.iter().position(|planes| *planes == count);
+        place.map_or(f64::NAN, |at| planes[at].times.over(&planes[0].times))
+    };
+    let four = |place: usize| sizes[place].times.over(&sizes[place - 1].times);
+    vec![
+        format!(
+            "{volume}: six more planes take {:.3} times as long (paper {:.3}), 64 more {:.3} times; \
+             the picture is the same",
+            slower(6),
+            PAPER[0].1 / PAPER[1].1,
+            slower(64)
+        ),
+        format!(
+            "{volume}: four times the pixels take {:.2} and {:.2} times as long",
+            four(1),
+            four(2)
+        ),
+    ]
+}

@@ -1,0 +1,119 @@
+//! Lesar et al. 2015, Table I: effects on and off, the camera still and moving.
+
+use super::super::ways::{self, Found, Subject, Way, measure, plain_steps};
+use super::super::{Bench, Experiment, Outcome, Protocol, Specimen};
+use crate::error::Result;
+use crate::report::{Shown, Table};
+use crate::scene::{Phong, Picture, Refine, Traverse};
+use crate::volume::PhantomKind;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "b15",
+    about: "what each effect costs with the camera still and moving, beside the paper's (Lesar et \
+            al. 2015, Table I)",
+    takes_volumes: true,
+    counts_rays: false,
+    times_frames: true,
+    run,
+};
+
+/// An effect of the paper, and its fps on and off: the camera still, and moving.
+const PAPER: [(&str, [[f64; 2]; 2]); 4] = [
+    ("depth of field", [[15.70, 16.15], [14.25, 14.63]]),
+    ("sparse casting", [[14.48, 16.11], [16.84, 14.23]]),
+    ("ambient occlusion", [[15.64, 16.20], [14.33, 15.02]]),
+    ("cheaper filter", [[16.75, 16.04], [15.93, 14.74]]),
+];
+
+const COLUMNS: [(&str, &str, Shown); 10] = [
+    ("volume", "volume", Shown::Short),
+    ("protocol", "protocol", Shown::Short),
+    ("effect", "effect", Shown::Short),
+    ("min_ms", "ms, least", Shown::Fixed(2)),
+    ("median_ms", "median", Shown::Fixed(2)),
+    ("p95_ms", "p95", Shown::Fixed(2)),
+    ("fps", "fps", Shown::Fixed(1)),
+    ("paper_fps_on", "paper fps, on", Shown::Fixed(2)),
+    ("paper_fps_off", "paper fps, off", Shown::Fixed(2)),
+    ("paper_speedup", "paper ×", Shown::Fixed(3)),
+];
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let protocols = match bench.protocol {
+        Some(protocol) => vec![protocol],
+        None => Protocol::ALL.to_vec(),
+    };
+    let mut outcome = Outcome::of(Table::new(&COLUMNS));
+    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+        for &protocol in &protocols {
+            let key = format!("{}/{protocol}", subject.name);
+            let found = bench.unit(&key, || {
+                let specimen = subject.specimen()?;
+                measure(bench, protocol, specimen, &[base(bench, specimen)?])
+            })?;
+            tabulate(&mut outcome, &subject.name, protocol, &found[0]);
+            bench.so_far(&outcome)?;
+        }
+    }
+    let names = PAPER.map(|(name, _)| name).join(", ");
+    outcome.findings.push(format!(
+        "measured is the picture without effects, of which the paper's 'off' figures are; {names} are \
+         not part of this program, so that only the paper's figures stand in their rows"
+    ));
+    outcome.findings.push(
+        "in the paper sparse casting is slower with the camera still (0.90 times as fast) and \
+         faster with it moving (1.18 times)"
+            .into(),
+    );
+    let told = protocols.iter().map(|protocol| protocol.told(bench.effort));
+    outcome.findings.push(format!(
+        "times are {}: pictures of {1}x{1} pixels",
+        told.collect::<Vec<_>>().join(", or "),
+        bench.effort.side_px()
+    ));
+    Ok(outcome)
+}
+
+/// The paper's picture without effects: a shaded surface at fixed steps, five iterations of regula
+/// falsi, kd-restart.
+fn base(bench: &Bench, specimen: &Specimen) -> Result<Way> {
+    let surface = specimen.surface(bench.effort.side_px())?;
+    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    scene.sampling.traverse = Traverse::KdRestart;
+    if let Picture::Surface { phong, .. } = &mut scene.picture {
+        *phong = Some(Phong::default());
+    }
+    Ok(ways::Way::new("none", scene))
+}
+
+fn tabulate(outcome: &mut Outcome, volume: &str, protocol: Protocol, found: &Found) {
+    let times = &found.times;
+    outcome.table.push(vec![
+        volume.into(),
+        protocol.name().into(),
+        "none".into(),
+        times.min_ms().into(),
+        times.median_ms().into(),
+        times.p95_ms().into(),
+        (1e3 / times.median_ms()).into(),
+    ]);
+    for (effect, fps) in PAPER {
+        let [on, off] = match protocol {
+            Protocol::Static => fps[0],
+            Protocol::Orbit => fps[1],
+        };
+        let nothing = || None::<f64>.into();
+        outcome.table.push(vec![
+            volume.into(),
+            protocol.name().into(),
+            effect.into(),
+            nothing(),
+            nothing(),
+            nothing(),
+            nothing(),
+            on.into(),
+            off.into(),
+            (on / off).into(),
+        ]);
+    }
+}

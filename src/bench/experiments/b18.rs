@@ -1,0 +1,110 @@
+//! Lesar et al. 2015, Figure 5: one volume under several transfer functions.
+
+use super::super::ways::{self, Errors, Subject, Way, run_group};
+use super::super::{Bench, Experiment, Outcome, Shot, Specimen};
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::volume::PhantomKind;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "b18",
+    about: "one volume under four transfer functions: walls, interiors, both, all of it; with \
+            pictures (Lesar et al. 2015, Figure 5)",
+    takes_volumes: true,
+    counts_rays: false,
+    times_frames: true,
+    run,
+};
+
+const WALL: [f64; 3] = [0.75, 0.22, 0.12];
+const LUMEN: [f64; 3] = [0.95, 0.85, 0.55];
+const TISSUE: [f64; 3] = [0.25, 0.35, 0.55];
+
+/// Value as a share of the way from the volume's least value to the iso value (below 1) and on to
+/// the greatest (1 to 2), linear-light colour, opacity of a voxel's path.
+type Knots = &'static [(f64, [f64; 3], f64)];
+
+const VARIANTS: [(&str, Knots); 4] = [
+    (
+        "walls",
+        &[(0.6, WALL, 0.0), (1.0, WALL, 0.35), (1.4, WALL, 0.0)],
+    ),
+    ("interiors", &[(1.3, LUMEN, 0.0), (2.0, LUMEN, 0.6)]),
+    (
+        "walls and interiors",
+        &[
+            (0.6, WALL, 0.0),
+            (1.0, WALL, 0.08),
+            (1.4, LUMEN, 0.0),
+            (2.0, LUMEN, 0.6),
+        ],
+    ),
+    (
+        "all of it",
+        &[(0.1, TISSUE, 0.0), (1.0, WALL, 0.05), (2.0, LUMEN, 0.4)],
+    ),
+];
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let mut outcome = Outcome::of(ways::table("case", Errors::Light));
+    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+        let found = run_group(bench, &mut outcome, &subject, "dvr", |specimen| {
+            list(bench, specimen)
+        })?;
+        let slowest = found.iter().map(|one| one.times.over(&found[0].times));
+        outcome.findings.push(format!(
+            "{}: the picture of the slowest function takes {:.1} times as long as that of the \
+             walls; the largest colour error of any is {:.4}",
+            subject.name,
+            slowest.fold(1.0, f64::max),
+            found
+                .iter()
+                .filter_map(|one| Some(one.light?.max))
+                .fold(0.0, f64::max)
+        ));
+        outcome
+            .pictures
+            .extend(pictures(bench, subject.specimen()?)?);
+    }
+    outcome.findings.push(bench.timed());
+    Ok(outcome)
+}
+
+fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
+    let range = specimen.volume.range();
+    let value = |place: f64| {
+        if place <= 1.0 {
+            range.min + place * (specimen.iso - range.min)
+        } else {
+            specimen.iso + (place - 1.0) * (range.max - specimen.iso)
+        }
+    };
+    let ways = VARIANTS.iter().map(|(name, knots)| {
+        let knots = knots
+            .iter()
+            .map(|&(at, color, opacity)| (value(at), color, opacity));
+        let knots: Vec<_> = knots.collect();
+        let scene = specimen.colored_medium(bench.effort.side_px(), &knots)?;
+        Ok(Way::new(*name, scene))
+    });
+    ways.collect()
+}
+
+fn pictures(bench: &Bench, specimen: &Specimen) -> Result<Vec<Shot>> {
+    let octree = bench.octree(specimen)?;
+    let mut renderer = bench.renderer(specimen, &octree)?;
+    let wanted = Wanted {
+        display: true,
+        ..Wanted::default()
+    };
+    let shots = list(bench, specimen)?.into_iter().map(|way| {
+        let frame = renderer.render(&way.scene, wanted)?.frame;
+        Ok(Shot {
+            section: format!("{}, dvr", specimen.name),
+            label: way.name,
+            caption: String::new(),
+            frame,
+        })
+    });
+    shots.collect()
+}

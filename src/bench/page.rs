@@ -1,0 +1,85 @@
+//! The page about a run: its findings, its plots and pictures, its table.
+
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::report::{Gallery, Picture, Report, Section};
+
+use super::{Bench, Outcome};
+
+/// Of a run whose pictures lie as files in `folder`.
+///
+/// # Errors
+/// A picture that cannot be read.
+pub fn report(bench: &Bench, outcome: &Outcome, folder: &Path) -> Result<Report> {
+    let mut sections = outcome.sections.clone();
+    for shot in &outcome.pictures {
+        let path = folder.join(shot.file());
+        let png = std::fs::read(&path).map_err(|cause| Error::io(&path, "read", &cause))?;
+        let picture = Picture {
+            label: shot.label.clone(),
+            caption: shot.caption.clone(),
+            png,
+            error_map: None,
+        };
+        let place = sections.iter().position(|one| one.title == shot.section);
+        let place = place.unwrap_or_else(|| {
+            sections.push(Section {
+                title: shot.section.clone(),
+                ..Section::default()
+            });
+            sections.len() - 1
+        });
+        let gallery = sections[place].gallery.get_or_insert_with(Gallery::default);
+        gallery.pictures.push(picture);
+    }
+    sections.push(Section {
+        title: "All figures".into(),
+        table: Some(outcome.table.clone()),
+        ..Section::default()
+    });
+    let mut findings = outcome.findings.clone();
+    findings.extend(outcome.failure.clone());
+    Ok(Report {
+        title: format!("angioray bench {}", bench.experiment.name),
+        summary: format!("What was measured: {}.", bench.experiment.about),
+        facts: facts(bench),
+        command: bench.command.clone(),
+        findings,
+        sections,
+    })
+}
+
+fn facts(bench: &Bench) -> Vec<(String, String)> {
+    let device = bench.device.info();
+    let volumes = bench.specimens.iter().map(|specimen| {
+        let (dims, kind) = (
+            specimen.volume.dims(),
+            specimen.volume.voxels().voxel_type(),
+        );
+        let iso = crate::scene::options::concise(specimen.iso);
+        format!("{} ({dims} {}, iso {iso})", specimen.name, kind.name())
+    });
+    let volumes = match bench.specimens.is_empty() {
+        true => "phantoms".to_owned(),
+        false => volumes.collect::<Vec<_>>().join(", "),
+    };
+    let mut facts = vec![
+        ("volumes", volumes),
+        ("effort", bench.effort.name().to_owned()),
+    ];
+    if bench.experiment.times_frames {
+        let protocol = bench.protocol.map(|protocol| protocol.to_string());
+        facts.push(("protocol", protocol.unwrap_or_else(|| "the default".into())));
+    }
+    facts.extend([
+        ("device", device.name.clone()),
+        ("platform", device.platform.clone()),
+        ("driver", device.driver.clone()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+    ]);
+    let facts = facts.into_iter();
+    facts
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}

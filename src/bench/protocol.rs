@@ -1,0 +1,124 @@
+//! What the camera does while frames are timed.
+
+use glam::{DMat3, DVec3};
+
+use crate::error::{Error, Result};
+use crate::scene::options::plain::readable;
+use crate::scene::{Camera, Scene};
+
+use super::Effort;
+
+/// `--protocol`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Protocol {
+    /// It stays where it is.
+    #[default]
+    Static,
+    /// It goes once around the volume, a frame a place.
+    Orbit,
+}
+
+impl Protocol {
+    pub const ALL: [Self; 2] = [Self::Static, Self::Orbit];
+
+    /// What the user types.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Static => "static",
+            Self::Orbit => "orbit",
+        }
+    }
+
+    /// How often each setting is timed.
+    pub fn frames(self, effort: Effort) -> usize {
+        match (self, effort) {
+            (Self::Static, _) => effort.repeats(),
+            (Self::Orbit, Effort::Quick) => 12,
+            (Self::Orbit, Effort::Usual | Effort::Full) => 36,
+        }
+    }
+
+    /// What times of it are, for the findings.
+    pub(super) fn told(self, effort: Effort) -> String {
+        let frames = self.frames(effort);
+        let of = match self {
+            Self::Static => format!("{frames} repeats in turn"),
+            Self::Orbit => {
+                format!("an orbit of {frames} frames, all settings in turn at each place")
+            }
+        };
+        format!("the least, the median and the 95th percentile of {of}")
+    }
+
+    /// How far the camera has gone in a frame, degrees.
+    pub(super) fn azimuth_deg(self, effort: Effort, frame: usize) -> f64 {
+        match self {
+            Self::Static => 0.0,
+            Self::Orbit => 360.0 * frame as f64 / self.frames(effort) as f64,
+        }
+    }
+}
+
+impl std::str::FromStr for Protocol {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let found = Self::ALL.into_iter().find(|one| one.name() == text);
+        found.ok_or_else(|| {
+            Error::usage(format!("'{text}' is not a protocol: write static or orbit"))
+        })
+    }
+}
+
+impl std::fmt::Display for Protocol {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+readable!(Protocol);
+
+/// The scene with its camera turned about the axis through `center_world` toward the head: as
+/// `--azimuth` does from the named views.
+///
+/// # Errors
+/// None in practice: a sound camera turned is sound.
+pub(super) fn turned(scene: &Scene, center_world: DVec3, degrees: f64) -> Result<Scene> {
+    let turn = DMat3::from_rotation_z(degrees.to_radians());
+    let camera = scene.camera;
+    let eye_world = center_world + turn * (camera.eye_world() - center_world);
+    let target_world = eye_world + turn * camera.forward();
+    Ok(Scene {
+        camera: Camera::look_at(eye_world, target_world, turn * camera.up(), camera.lens())?,
+        ..scene.clone()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Specimen;
+    use super::*;
+    use crate::volume::PhantomKind;
+
+    #[test]
+    fn an_orbit_turns_as_azimuth_does_and_closes() {
+        let specimen = Specimen::phantom(PhantomKind::MarschnerLobb).unwrap();
+        let (center_world, _) = specimen.volume.bounding_sphere();
+        let scene = specimen.surface(16).unwrap();
+        let text = "mode = 'iso'\nsize = '16x16'\nazimuth = 70\nelevation = 20\n";
+        let by_flag = specimen.resolved(text).unwrap().camera;
+        let eye = |degrees| turned(&scene, center_world, degrees).unwrap().camera;
+        let apart = |a: Camera, b: Camera| {
+            let eyes = a.eye_world().distance(b.eye_world());
+            eyes + a.up().distance(b.up()) + a.forward().distance(b.forward())
+        };
+        assert!(apart(eye(40.0), by_flag) < 1e-9);
+        // The control: the other way round it is elsewhere.
+        assert!(apart(eye(-40.0), by_flag) > 1.0);
+        assert!(apart(eye(360.0), scene.camera) < 1e-9);
+        for effort in [Effort::Quick, Effort::Usual] {
+            let frames = Protocol::Orbit.frames(effort);
+            assert_eq!(Protocol::Orbit.azimuth_deg(effort, frames), 360.0);
+        }
+    }
+}

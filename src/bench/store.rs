@@ -1,0 +1,108 @@
+//! The folder of a run: what it has found so far, and how it goes on after a stop.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::{Error, Result};
+use crate::stop;
+
+use super::journal::{Journal, Run};
+use super::results::Results;
+use super::{Bench, Outcome};
+
+/// Made before the work begins, so that what cannot be written is known then.
+pub struct Store {
+    folder: PathBuf,
+    results: Results,
+    journal: RefCell<Journal>,
+    /// Units measured before this process began.
+    before: usize,
+    /// How often each key was asked for: two volumes may have one name.
+    asked: RefCell<HashMap<String, usize>>,
+}
+
+impl Store {
+    /// Makes the folder where there is none. The work ends between two units, or in one, when
+    /// [`stop::asked`] says so.
+    ///
+    /// # Errors
+    /// The folder cannot be made, takes no files, or holds what another run has left unfinished.
+    pub fn in_folder(folder: &Path, run: &Run, restart: bool) -> Result<Self> {
+        let results = Results::in_folder(folder)?;
+        let journal = Journal::open(folder, run, restart)?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            results,
+            before: journal.units(),
+            journal: RefCell::new(journal),
+            asked: RefCell::default(),
+        })
+    }
+
+    /// How many units were measured before.
+    pub fn known_units(&self) -> usize {
+        self.before
+    }
+
+    pub(super) fn unit<T: Serialize + DeserializeOwned>(
+        &self,
+        key: &str,
+        compute: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        let key = &self.unique(key);
+        if let Some(found) = self.journal.borrow().found(key)? {
+            return Ok(found);
+        }
+        self.check_stop()?;
+        let found = compute()?;
+        self.journal.borrow_mut().keep(key, &found)?;
+        Ok(found)
+    }
+
+    /// The key, numbered where it has been asked for before: the work has an order.
+    fn unique(&self, key: &str) -> String {
+        let mut asked = self.asked.borrow_mut();
+        let times = asked.entry(key.to_owned()).or_default();
+        *times += 1;
+        match *times {
+            1 => key.to_owned(),
+            times => format!("{key} #{times}"),
+        }
+    }
+
+    /// # Errors
+    /// Stopped: the user, or the machine, asked for it.
+    pub(super) fn check_stop(&self) -> Result<()> {
+        if !stop::asked() {
+            return Ok(());
+        }
+        let units = match self.journal.borrow().units() {
+            1 => "1 unit of work is".to_owned(),
+            units => format!("{units} units of work are"),
+        };
+        Err(Error::stopped(format!(
+            "stopped before the end; {units} kept in {}",
+            self.folder.display()
+        ))
+        .hint("the same command goes on from there; with --restart it begins anew"))
+    }
+
+    /// The rows so far.
+    pub(super) fn so_far(&self, bench: &Bench, outcome: &Outcome) -> Result<()> {
+        self.results.write(bench, outcome, false)
+    }
+
+    /// All that was found; nothing is left to go on with. Gives the files.
+    ///
+    /// # Errors
+    /// The disk.
+    pub fn finish(&self, bench: &Bench, outcome: &Outcome) -> Result<Vec<PathBuf>> {
+        let files = self.results.write_all(bench, outcome)?;
+        self.journal.borrow().finish()?;
+        Ok(files)
+    }
+}

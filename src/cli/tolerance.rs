@@ -2,12 +2,53 @@
 
 use serde::Serialize;
 
+use crate::error::Result;
+use crate::frame::Wanted;
 use crate::scene::options::concise;
-use crate::scene::{ErrorBound, ErrorMetric};
-use crate::tolerance::{CONFIDENCE, Choice};
+use crate::scene::{Camera, ErrorBound, ErrorMetric, SceneOptions};
+use crate::tolerance::{self, CONFIDENCE, Choice, Task};
+
+use super::engine::Caster;
+use super::load::Loaded;
+use super::progress::Bars;
+use super::terminal::note;
+
+/// Of the random tiles: the same in every run.
+const SEED: u64 = 1;
+
+/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
+/// what all errors are taken against: it needs no choice, whatever the bound. Told to the user.
+pub fn choose(
+    bound: ErrorBound,
+    options: &SceneOptions,
+    loaded: &Loaded,
+    wanted: Wanted,
+    elsewhere: &[Camera],
+    caster: &mut Caster,
+    bars: &Bars,
+) -> Result<Option<Choice>> {
+    let Caster::Device { renderer, .. } = caster else {
+        note(format_args!(
+            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+        ));
+        return Ok(None);
+    };
+    let task = Task {
+        volume: &loaded.volume,
+        subject: &loaded.subject,
+        options,
+        bound,
+        wanted,
+        seed: SEED,
+        elsewhere,
+    };
+    let choice = tolerance::choose(&task, renderer, bars)?;
+    note(note_of(&choice));
+    Ok(Some(choice))
+}
 
 /// One sentence about a choice.
-pub fn note_of(choice: &Choice) -> String {
+fn note_of(choice: &Choice) -> String {
     let Choice {
         bound,
         setting,
@@ -25,10 +66,14 @@ pub fn note_of(choice: &Choice) -> String {
     } else {
         format!("nothing keeps it, {} is used", setting.flags())
     };
+    let views = match verified.views {
+        1 => String::new(),
+        views => format!(" in {views} views"),
+    };
     let tiles = match (verified.tiles, choice.met) {
         (0, _) => "every pixel was held against the reference".to_owned(),
-        (tiles, true) => format!("verified on {tiles} fresh tiles"),
-        (tiles, false) => format!("as {tiles} fresh tiles have it"),
+        (tiles, true) => format!("verified on {tiles} fresh tiles{views}"),
+        (tiles, false) => format!("as {tiles} fresh tiles{views} have it"),
     };
     format!(
         "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
@@ -66,6 +111,7 @@ pub struct ToleranceStats {
 
 #[derive(Serialize)]
 struct VerifiedStats {
+    views: usize,
     tiles: usize,
     rays: usize,
 }
@@ -103,6 +149,7 @@ impl ToleranceStats {
             upper: choice.upper,
             confidence: CONFIDENCE,
             verified: VerifiedStats {
+                views: choice.verified.views,
                 tiles: choice.verified.tiles,
                 rays: choice.verified.rays,
             },

@@ -6,7 +6,14 @@ mod common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 5] = ["vessels", "traversals", "convergence", "rays", "gradients"];
+const EXPERIMENTS: [&str; 6] = [
+    "vessels",
+    "traversals",
+    "convergence",
+    "rays",
+    "gradients",
+    "tolerance",
+];
 
 #[test]
 fn the_help_lists_every_experiment_and_has_an_example() {

@@ -3,6 +3,7 @@
 mod convergence;
 mod gradients;
 mod rays;
+mod tolerance;
 mod traversals;
 mod vessels;
 
@@ -15,4 +16,5 @@ pub const EXPERIMENTS: &[Experiment] = &[
     convergence::EXPERIMENT,
     rays::EXPERIMENT,
     gradients::EXPERIMENT,
+    tolerance::EXPERIMENT,
 ];

@@ -4,6 +4,7 @@
 //! [`render`] casts it on an OpenCL device, [`mod@reference`] in double precision on the host; both
 //! give a [`frame::Frame`], which is written as a picture. ARCHITECTURE.md draws the whole.
 
+pub mod batch;
 pub mod bench;
 pub mod cli;
 pub mod compare;

@@ -22,7 +22,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         assert!(flags.contains(&"scene".to_owned()), "{name}: {flags:?}");
         flags
     };
-    let mut keys: Vec<String> = ["render", "bench", "info", "phantom", "devices"]
+    let mut keys: Vec<String> = ["render", "orbit", "bench", "info", "phantom", "devices"]
         .into_iter()
         .flat_map(command)
         .filter(|flag| flag != "scene")
@@ -32,7 +32,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
     for key in keys {
         // Of a wrong type for every key: accepted as a key, refused as a value by its command.
         place.write("keys.toml", &format!("\n{key} = {{ a = 1 }}\n"));
-        let refusals: Vec<String> = ["render", "bench", "info", "phantom"]
+        let refusals: Vec<String> = ["render", "orbit", "bench", "info", "phantom"]
             .into_iter()
             .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
             .collect();
@@ -44,7 +44,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
     // The controls: keys that no command has.
     for key in ["scene", "help", "phantom", "sparse"] {
         place.write("keys.toml", &format!("\n{key} = 1\n"));
-        for command in ["render", "bench", "info", "phantom", "devices"] {
+        for command in ["render", "orbit", "bench", "info", "phantom", "devices"] {
             let said = place.refused(&format!("{command} --scene keys.toml"), 2);
             assert!(said.starts_with("error: keys.toml:2: "), "{said}");
         }

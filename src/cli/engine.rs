@@ -214,6 +214,7 @@ impl Caster<'_> {
                         build: rendering.build_ms,
                         upload: rendering.upload_ms,
                         render: rendering.render_ms,
+                        read_back: rendering.read_back_ms,
                         gradient: rendering.gradients.map_or(0.0, |figures| figures.ms),
                         ..Times::default()
                     },

@@ -8,6 +8,7 @@ mod hardcase;
 mod info;
 mod job;
 mod load;
+mod orbit;
 mod outputs;
 mod percentiles;
 mod phantom;
@@ -45,6 +46,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Orbit(Box<orbit::OrbitArguments>),
     Compare(Box<compare::CompareArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
@@ -56,6 +58,7 @@ impl Command {
     fn run(self) -> Result<()> {
         match self {
             Self::Render(arguments) => arguments.run(),
+            Self::Orbit(arguments) => arguments.run(),
             Self::Compare(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),

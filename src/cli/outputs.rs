@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use crate::batch::FrameNames;
 use crate::error::{Error, Result};
-use crate::frame::{BitDepth, Encoding, Format, Layer};
+use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
 use crate::output::check_writable;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
@@ -53,9 +54,12 @@ impl OutputOptions {
     /// What of a scene file still applies when these are the flags: another picture file drops what
     /// its format cannot hold.
     pub fn keep_of(&self, mut file: Self) -> Self {
-        if let Some(FilePath(path)) = &self.output
-            && let Ok(format) = Format::from_path(path)
-        {
+        let Some(FilePath(path)) = &self.output else {
+            return file;
+        };
+        if AnimationFormat::from_path(path).is_some() {
+            (file.aov, file.bit_depth, file.quality) = (None, None, None);
+        } else if let Ok(format) = Format::from_path(path) {
             file.aov = file.aov.filter(|_| format.carries_layers());
             file.bit_depth = file.bit_depth.filter(|_| format == Format::Png);
             file.quality = file.quality.filter(|_| format == Format::Jpeg);
@@ -63,14 +67,24 @@ impl OutputOptions {
         file
     }
 
+    /// The file named by `--output`.
+    ///
     /// # Errors
-    /// No picture named; what its format cannot hold.
-    pub fn files(self) -> Result<Files> {
-        let Some(FilePath(picture)) = self.output else {
-            return Err(Error::usage("no picture to write was named")
-                .hint("give its file by '--output', or as 'output' in the scene file"));
-        };
-        let format = Format::from_path(&picture)?;
+    /// None is.
+    pub fn path(&self) -> Result<&Path> {
+        match &self.output {
+            Some(FilePath(path)) => Ok(path),
+            None => Err(Error::usage("no picture to write was named")
+                .hint("give its file by '--output', or as 'output' in the scene file")),
+        }
+    }
+
+    /// How a picture of this name is written.
+    ///
+    /// # Errors
+    /// A format that is not known, what it cannot hold.
+    pub fn encoding(&self, picture: &Path) -> Result<Encoding> {
+        let format = Format::from_path(picture)?;
         if self.quality.is_some() && format != Format::Jpeg {
             return Err(Error::usage("'--quality' is for .jpg files only"));
         }
@@ -78,12 +92,19 @@ impl OutputOptions {
             format,
             bit_depth: self.bit_depth.map_or(BitDepth::Eight, |Bits(bits)| bits),
             quality: self.quality.unwrap_or(Encoding::DEFAULT_QUALITY),
-            layers: self.aov.map_or(Vec::new(), |Layers(layers)| layers),
+            layers: (self.aov.as_ref()).map_or(Vec::new(), |Layers(layers)| layers.clone()),
         };
         encoding.check()?;
+        Ok(encoding)
+    }
+
+    /// # Errors
+    /// As [`OutputOptions::path`] and [`OutputOptions::encoding`].
+    pub fn files(self) -> Result<Files> {
+        let picture = self.path()?.to_owned();
         Ok(Files {
+            encoding: self.encoding(&picture)?,
             picture,
-            encoding,
             stats: self.stats.map(|FilePath(path)| path),
         })
     }
@@ -143,6 +164,33 @@ fn folder(path: &Path) -> &Path {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     }
+}
+
+/// That no file of a sequence replaces one that the job reads or, in `stats`, writes besides; and
+/// that they can be written, their folder being made where there is none.
+pub fn check_sequence(
+    names: &FrameNames,
+    mut frames: impl Iterator<Item = u32>,
+    inputs: &[impl AsRef<Path>],
+    stats: Option<&Path>,
+) -> Result<()> {
+    let read: Vec<PathBuf> = inputs.iter().map(|input| place(input.as_ref())).collect();
+    let stats = stats.map(place);
+    let taken = frames.find(|&frame| {
+        let picture = place(&names.path(frame));
+        read.contains(&picture) || stats.as_ref() == Some(&picture)
+    });
+    if let Some(frame) = taken {
+        return Err(Error::usage(format!(
+            "{}: this file is read, or is where the statistics go: writing frame {frame} would replace it",
+            names.path(frame).display()
+        )));
+    }
+    let mut folder = folder(&names.path(0)).to_owned();
+    while !folder.exists() {
+        folder = self::folder(&folder).to_owned();
+    }
+    check_writable(&folder.join("frame"))
 }
 
 /// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.

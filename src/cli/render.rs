@@ -12,7 +12,7 @@ use super::engine::Engine;
 use super::job::JobArguments;
 use super::load::ms_since;
 use super::progress::Bars;
-use super::stats::{Memory, Stats, Times, VERSION, VolumeStats};
+use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
 use super::tolerance::{ToleranceStats, choose};
 
@@ -117,12 +117,12 @@ impl RenderArguments {
             ),
             max_error: choice.as_ref().map(ToleranceStats::of),
         };
-        stats.write(path)
+        stats::write(&stats, path)
     }
 }
 
 /// What precomputed gradients cost and are worth.
-fn gradient_note(figures: &GradientFigures) -> String {
+pub fn gradient_note(figures: &GradientFigures) -> String {
     let megabytes = figures.bytes as f64 / 1e6;
     let angle = match figures.angle {
         Some(angle) => format!(

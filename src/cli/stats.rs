@@ -67,7 +67,7 @@ impl VolumeStats {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Clone)]
 pub struct DeviceStats {
     pub name: String,
     pub platform: String,
@@ -98,10 +98,12 @@ pub struct Times {
     pub gradient: f64,
     /// All passes of the frame.
     pub render: f64,
+    /// Copying the planes to the host; 0 where the reference renders.
+    pub read_back: f64,
     pub encode: f64,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Clone)]
 pub struct PassStats {
     pub name: String,
     pub ms: f64,
@@ -137,13 +139,45 @@ fn host_peak_bytes() -> Option<u64> {
     kilobytes.checked_mul(1024)
 }
 
-impl Stats<'_> {
-    pub fn write(&self, path: &Path) -> Result<()> {
-        write_atomically(path, |out| {
-            serde_json::to_writer_pretty(&mut *out, self)
-                .map_err(std::io::Error::from)
-                .and_then(|()| writeln!(out))
-                .map_err(|cause| Error::io(path, "write", &cause))
-        })
-    }
+/// Of an orbit: the sums over the frames that were made, and each of them.
+#[derive(Serialize)]
+pub struct OrbitStats<'a> {
+    /// The scene is that of frame 0.
+    #[serde(flatten)]
+    pub all: Stats<'a>,
+    pub orbit: OrbitFigures,
+    pub frames: Vec<FrameStats>,
+}
+
+/// What was turned about what, and this process's share of it.
+#[derive(Serialize)]
+pub struct OrbitFigures {
+    pub frames: u32,
+    pub degrees: f64,
+    /// Unit, world space.
+    pub axis: [f64; 3],
+    /// Frames that were there already.
+    pub kept: usize,
+    pub shard: String,
+}
+
+#[derive(Serialize)]
+pub struct FrameStats {
+    pub index: u32,
+    pub degrees: f64,
+    pub render_ms: f64,
+    pub read_back_ms: f64,
+    /// Beside the rendering of frames after it.
+    pub encode_ms: f64,
+    pub counts: Counts,
+}
+
+/// Writes statistics as JSON.
+pub fn write(stats: &impl Serialize, path: &Path) -> Result<()> {
+    write_atomically(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, stats)
+            .map_err(std::io::Error::from)
+            .and_then(|()| writeln!(out))
+            .map_err(|cause| Error::io(path, "write", &cause))
+    })
 }

@@ -17,7 +17,7 @@ mod webp;
 mod whole;
 mod write;
 
-pub use animation::{Animation, AnimationFormat, FrameRate};
+pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
 pub use format::{BitDepth, Encoding, Format, channels};
 pub use metadata::read_metadata;
 pub use percentile::percentile;

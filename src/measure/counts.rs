@@ -44,3 +44,26 @@ impl Counts {
         }
     }
 }
+
+impl std::iter::Sum for Counts {
+    /// Of no pictures: nothing, and nothing asked for.
+    fn sum<I: Iterator<Item = Self>>(pictures: I) -> Self {
+        let nothing = Self {
+            rays: 0,
+            samples: 0,
+            nodes: 0,
+            hits: 0,
+            undecided: None,
+        };
+        pictures.fold(nothing, |sum, one| Self {
+            rays: sum.rays + one.rays,
+            samples: sum.samples + one.samples,
+            nodes: sum.nodes + one.nodes,
+            hits: sum.hits + one.hits,
+            undecided: match (sum.undecided, one.undecided) {
+                (Some(sum), Some(one)) => Some(sum + one),
+                (sum, one) => sum.or(one),
+            },
+        })
+    }
+}

@@ -63,6 +63,8 @@ pub struct Rendering {
     pub uploaded_bytes: u64,
     /// Device time from the first launch's start to the last one's end.
     pub render_ms: f64,
+    /// Copying the wanted planes to the host, after the last pass has ended.
+    pub read_back_ms: f64,
     /// Of precomputed gradients, where the picture made use of them.
     pub gradients: Option<GradientFigures>,
     /// Held on the device while rendering.
@@ -192,8 +194,11 @@ impl<'a> Renderer<'a> {
         }
         let classify_ms = run.classify_ms;
         let (passes, render_ms) = timings.finish(self.device)?;
+        let finished = Instant::now();
+        let frame = planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?;
         Ok(Rendering {
-            frame: planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?,
+            frame,
+            read_back_ms: finished.elapsed().as_secs_f64() * 1e3,
             passes,
             build_ms: self.built.build_ms() - build_ms_before,
             upload_ms: std::mem::take(&mut self.upload_ms),

@@ -8,7 +8,7 @@ use ::png::{ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent}
 use crate::error::{Error, Result};
 use crate::frame::{Frame, quantize};
 
-use super::Animation;
+use super::{FrameRate, Reel};
 
 /// Frames last this many of the 1/100 s that a rate's whole number counts in.
 const HUNDRED_SECONDS: u16 = 100;
@@ -16,7 +16,8 @@ const HUNDRED_SECONDS: u16 = 100;
 pub(super) fn encode(
     out: &mut impl Write,
     path: &Path,
-    animation: &Animation,
+    rate: FrameRate,
+    reel: Reel,
     metadata: &[(&str, &str)],
     frames: &mut dyn Iterator<Item = Result<Frame>>,
 ) -> Result<()> {
@@ -24,7 +25,7 @@ pub(super) fn encode(
         EncodingError::IoError(cause) => Error::io(path, "write", &cause),
         other => Error::failed(format!("{}: cannot write: {other}", path.display())),
     };
-    let mut encoder = Encoder::new(out, animation.size.width(), animation.size.height());
+    let mut encoder = Encoder::new(out, reel.size.width(), reel.size.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_compression(Compression::Fast);
@@ -34,9 +35,9 @@ pub(super) fn encode(
             .add_itxt_chunk((*key).to_owned(), (*text).to_owned())
             .map_err(failed)?;
     }
-    encoder.set_animated(animation.frames, 0).map_err(failed)?;
+    encoder.set_animated(reel.frames, 0).map_err(failed)?;
     encoder
-        .set_frame_delay(HUNDRED_SECONDS, animation.rate.per_100_s())
+        .set_frame_delay(HUNDRED_SECONDS, rate.per_100_s())
         .map_err(failed)?;
     let mut writer = encoder.write_header().map_err(failed)?;
     for frame in frames {

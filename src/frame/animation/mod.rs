@@ -104,8 +104,12 @@ impl fmt::Display for FrameRate {
 pub struct Animation {
     pub format: AnimationFormat,
     pub rate: FrameRate,
+}
+
+/// What comes: frames of one size, at least one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reel {
     pub size: ImageSize,
-    /// At least one.
     pub frames: u32,
 }
 
@@ -113,13 +117,13 @@ impl Animation {
     /// That it can be written, as far as can be told beforehand.
     ///
     /// # Errors
-    /// A frame rate or size that the format cannot do (usage); ffmpeg is needed, and missing or
+    /// A frame rate that the format cannot do (usage); ffmpeg is needed, and missing or
     /// without the codec.
     pub fn check(&self) -> Result<()> {
         match self.format {
-            AnimationFormat::Gif => gif::check(self),
+            AnimationFormat::Gif => gif::check(self.rate),
             AnimationFormat::Apng => Ok(()),
-            AnimationFormat::Mp4 | AnimationFormat::WebM => video::check(self),
+            AnimationFormat::Mp4 | AnimationFormat::WebM => video::check(self.format),
         }
     }
 
@@ -132,6 +136,7 @@ impl Animation {
     pub fn write(
         &self,
         path: &Path,
+        reel: Reel,
         metadata: &[(&str, &str)],
         frames: &mut dyn Iterator<Item = Result<Frame>>,
     ) -> Result<()> {
@@ -139,31 +144,33 @@ impl Animation {
         let mut frames = frames.map(|frame| {
             let frame = frame?;
             count.set(count.get() + 1);
-            if frame.size != self.size || count.get() > self.frames {
+            if frame.size != reel.size || count.get() > reel.frames {
                 return Err(Error::failed(format!(
                     "frame {} of {} is one too many, or is {} where the animation is {}",
                     count.get(),
-                    self.frames,
+                    reel.frames,
                     frame.size,
-                    self.size
+                    reel.size
                 )));
             }
             Ok(frame)
         });
         write_atomically(path, |out| {
             match self.format {
-                AnimationFormat::Gif => gif::encode(out, path, self, &mut frames),
-                AnimationFormat::Apng => apng::encode(out, path, self, metadata, &mut frames),
+                AnimationFormat::Gif => gif::encode(out, path, self.rate, reel.size, &mut frames),
+                AnimationFormat::Apng => {
+                    apng::encode(out, path, self.rate, reel, metadata, &mut frames)
+                }
                 AnimationFormat::Mp4 | AnimationFormat::WebM => {
-                    video::encode(out, path, self, &mut frames)
+                    video::encode(out, path, self, reel.size, &mut frames)
                 }
             }?;
-            if count.get() < self.frames {
+            if count.get() < reel.frames {
                 return Err(Error::failed(format!(
                     "{}: {} of {} frames came",
                     path.display(),
                     count.get(),
-                    self.frames
+                    reel.frames
                 )));
             }
             Ok(())

@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
+use crate::extent::ImageSize;
 use crate::frame::{Frame, quantize};
 
 use super::{Animation, AnimationFormat};
@@ -31,8 +32,8 @@ fn codecs(format: AnimationFormat) -> &'static [Codec] {
     }
 }
 
-pub(super) fn check(animation: &Animation) -> Result<()> {
-    codec(animation.format).map(drop)
+pub(super) fn check(format: AnimationFormat) -> Result<()> {
+    codec(format).map(drop)
 }
 
 /// The first encoder that the ffmpeg that is there has.
@@ -75,19 +76,20 @@ pub(super) fn encode(
     out: &mut impl Write,
     path: &Path,
     animation: &Animation,
+    size: ImageSize,
     frames: &mut dyn Iterator<Item = Result<Frame>>,
 ) -> Result<()> {
     let codec = codec(animation.format)?;
     let temporary = |cause: io::Error| Error::io(&std::env::temp_dir(), "write", &cause);
     let movie = NamedTempFile::new().map_err(temporary)?;
     let mut messages = tempfile::tempfile().map_err(temporary)?;
-    let mut command = command(animation, codec, movie.path());
+    let mut command = command(animation, size, codec, movie.path());
     command.stderr(messages.try_clone().map_err(temporary)?);
     let mut running = Running(command.spawn().map_err(|cause| unavailable(&cause))?);
     let mut fed = Ok(());
     if let Some(mut pipe) = running.0.stdin.take() {
         for frame in frames {
-            fed = pipe.write_all(&even(&quantize::rgb8(&frame?)?, animation));
+            fed = pipe.write_all(&even(&quantize::rgb8(&frame?)?, size));
             if fed.is_err() {
                 break;
             }
@@ -111,8 +113,13 @@ pub(super) fn encode(
 }
 
 /// Colours as BT.709 says, which players take HD video for.
-fn command(animation: &Animation, (encoder, quality): Codec, movie: &Path) -> Command {
-    let [width, height] = even_size(animation);
+fn command(
+    animation: &Animation,
+    size: ImageSize,
+    (encoder, quality): Codec,
+    movie: &Path,
+) -> Command {
+    let [width, height] = even_size(size);
     let mut command = Command::new(PROGRAM);
     command
         .args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"])
@@ -151,14 +158,14 @@ impl Drop for Running {
 }
 
 /// Half as many colours as pixels along either axis: both sides must be even.
-fn even_size(animation: &Animation) -> [u32; 2] {
-    [animation.size.width(), animation.size.height()].map(|side| side.next_multiple_of(2))
+fn even_size(size: ImageSize) -> [u32; 2] {
+    [size.width(), size.height()].map(|side| side.next_multiple_of(2))
 }
 
 /// The picture with its last column and row repeated where its sides are odd.
-fn even(rgb: &[u8], animation: &Animation) -> Vec<u8> {
-    let row_bytes = 3 * animation.size.width() as usize;
-    let [width, height] = even_size(animation).map(|side| side as usize);
+fn even(rgb: &[u8], size: ImageSize) -> Vec<u8> {
+    let row_bytes = 3 * size.width() as usize;
+    let [width, height] = even_size(size).map(|side| side as usize);
     let mut padded = Vec::with_capacity(3 * width * height);
     let rows = rgb.chunks_exact(row_bytes);
     let last = rgb.len().saturating_sub(row_bytes);
@@ -182,20 +189,10 @@ fn last_line(messages: &mut File) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::extent::ImageSize;
-    use crate::frame::FrameRate;
 
     #[test]
     fn odd_sides_repeat_their_last_row_and_column() {
-        let padded = |width, height, rgb: &[u8]| {
-            let animation = Animation {
-                format: AnimationFormat::Mp4,
-                rate: FrameRate::default(),
-                size: ImageSize::new(width, height).unwrap(),
-                frames: 1,
-            };
-            even(rgb, &animation)
-        };
+        let padded = |width, height, rgb: &[u8]| even(rgb, ImageSize::new(width, height).unwrap());
         let pixel = |n: u8| [n, n, n];
         let rgb = |pixels: &[u8]| pixels.iter().flat_map(|&n| pixel(n)).collect::<Vec<u8>>();
         assert_eq!(padded(1, 1, &rgb(&[7])), rgb(&[7, 7, 7, 7]));

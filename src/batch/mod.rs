@@ -1,0 +1,12 @@
+//! Frame after frame: which there are, which of them are this process's, which are made already,
+//! and where they go.
+
+mod beside;
+mod destination;
+mod names;
+mod shard;
+
+pub use beside::beside;
+pub use destination::{Destination, Shot, Written};
+pub use names::FrameNames;
+pub use shard::{Shard, ShardChoice};

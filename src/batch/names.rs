@@ -1,0 +1,132 @@
+//! The files of a sequence: a name with a place for the frame's number.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+/// A path whose file name has one place for a number, as in C and in ffmpeg: `%d`, or `%04d` for
+/// at least four digits with zeros before; `%%` is a percent sign.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FrameNames {
+    folder: PathBuf,
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl FrameNames {
+    const MOST_DIGITS: usize = 20;
+
+    /// # Errors
+    /// No place, more than one, or something else after a percent sign (usage).
+    pub fn of(pattern: &Path) -> Result<Self> {
+        let wrong = |why: &str| {
+            Error::usage(format!("{}: {why}", pattern.display())).hint(
+                "write the frame's number as %04d in the file's name, such as frames/%04d.png",
+            )
+        };
+        let Some(name) = pattern.file_name() else {
+            return Err(wrong("this names no file"));
+        };
+        let Some(name) = name.to_str() else {
+            return Err(wrong("the file's name is not UTF-8"));
+        };
+        let mut texts = vec![String::new()];
+        let mut places = Vec::new();
+        let mut rest = name;
+        while let Some((text, after)) = rest.split_once('%') {
+            let last = texts.len() - 1;
+            texts[last].push_str(text);
+            if let Some(after) = after.strip_prefix('%') {
+                texts[last].push('%');
+                rest = after;
+                continue;
+            }
+            let digits = after.len() - after.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+            let (width, after) = after.split_at(digits);
+            let Some(after) = after.strip_prefix('d') else {
+                return Err(wrong("after % there may be d, digits and d, or another %"));
+            };
+            let width = match width {
+                "" => Some(0),
+                width if width.starts_with('0') => width.parse().ok(),
+                _ => return Err(wrong("a number's width is written with a zero before it")),
+            };
+            match width.filter(|&width| width <= Self::MOST_DIGITS) {
+                Some(width) => places.push(width),
+                None => return Err(wrong("no frame's number has so many digits")),
+            }
+            texts.push(String::new());
+            rest = after;
+        }
+        let last = texts.len() - 1;
+        texts[last].push_str(rest);
+        match (&places[..], &texts[..]) {
+            ([digits], [before, after]) => Ok(Self {
+                folder: pattern.parent().unwrap_or(Path::new("")).to_owned(),
+                before: before.clone(),
+                digits: *digits,
+                after: after.clone(),
+            }),
+            ([], _) => Err(wrong("every frame would have this name")),
+            _ => Err(wrong("a frame has one number")),
+        }
+    }
+
+    /// The folder that they lie in; empty for the working folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    pub fn path(&self, frame: u32) -> PathBuf {
+        let Self {
+            before,
+            digits,
+            after,
+            ..
+        } = self;
+        self.folder.join(format!("{before}{frame:0digits$}{after}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_printf() {
+        let name = |pattern: &str, frame| {
+            let names = FrameNames::of(Path::new(pattern)).unwrap();
+            names.path(frame).to_str().unwrap().to_owned()
+        };
+        assert_eq!(name("frames/%04d.png", 7), "frames/0007.png");
+        assert_eq!(name("frames/%04d.png", 12345), "frames/12345.png");
+        assert_eq!(name("%d.png", 12), "12.png");
+        assert_eq!(name("100%%_%02d_of_3.exr", 1), "100%_01_of_3.exr");
+        assert_eq!(name("/a/%%d/b%03d", 1), "/a/%%d/b001");
+        let names = FrameNames::of(Path::new("a/b/%d.png")).unwrap();
+        assert_eq!(names.folder(), Path::new("a/b"));
+    }
+
+    #[test]
+    fn other_patterns_are_refused_in_one_sentence() {
+        for (pattern, why) in [
+            ("a.png", "every frame would have this name"),
+            ("%04d/a.png", "every frame would have this name"),
+            ("%%.png", "every frame would have this name"),
+            ("%d_%d.png", "one number"),
+            ("%4d.png", "zero before"),
+            ("%s.png", "after %"),
+            ("%04", "after %"),
+            ("%", "after %"),
+            ("%021d.png", "so many digits"),
+            ("%0999999999999999999999d.png", "so many digits"),
+            ("..", "names no file"),
+        ] {
+            let said = FrameNames::of(Path::new(pattern)).unwrap_err();
+            assert!(said.to_string().contains(why), "{pattern}: {said}");
+            assert!(said.hint_text().is_some());
+            assert_eq!(said.exit_code(), 2);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! An orbit: where its cameras are, and that it closes.
+
+use angioray::extent::Range;
+use angioray::scene::{Orbit, OrbitAxis, Resolved, SceneOptions, Subject};
+use glam::DVec3;
+
+fn subject() -> Subject {
+    Subject {
+        center_world: DVec3::new(10.0, -4.0, 2.5),
+        radius_mm: 60.0,
+        range: Range {
+            min: 0.0,
+            max: 255.0,
+        },
+        otsu: 90.0,
+        suggested_iso: 70.0,
+    }
+}
+
+fn seen(options: &str) -> Resolved {
+    let options = SceneOptions::parse(options, "test").unwrap();
+    options.resolve(&subject()).unwrap()
+}
+
+fn orbit(options: &str, axis: &str, degrees: f64, frames: u32) -> Orbit {
+    Orbit::new(seen(options), axis.parse().unwrap(), degrees, frames).unwrap()
+}
+
+/// How far two cameras are apart: their eyes in radii of the volume, and their directions.
+fn apart(a: &Resolved, b: &Resolved) -> f64 {
+    let (a, b) = (&a.scene.camera, &b.scene.camera);
+    (a.eye_world().distance(b.eye_world()) / subject().radius_mm)
+        .max(a.forward().distance(b.forward()))
+        .max(a.up().distance(b.up()))
+        .max(a.right().distance(b.right()))
+}
+
+const VIEWS: [&str; 6] = [
+    "",
+    "elevation = 20",
+    "view = 'superior'",
+    "carm = 'LAO 30 CRA 20'",
+    "eye = [100, -200, 90]\ntarget = [12, 0, 3]\nroll = 10",
+    "ortho = 80\nview = 'left'\nzoom = 2",
+];
+const AXES: [&str; 6] = ["up", "right", "x", "y", "z", "1,-2,0.5"];
+
+#[test]
+fn an_orbit_closes_without_a_repeated_frame() {
+    for view in VIEWS {
+        for axis in AXES {
+            for (degrees, frames) in [(360.0, 7), (-720.0, 12), (360.0, 1)] {
+                let orbit = orbit(view, axis, degrees, frames);
+                let first = orbit.at(0).unwrap();
+                // Exactly: whoever renders frame N gets the bytes of frame 0.
+                let closing = orbit.at(frames).unwrap();
+                assert_eq!(closing.scene, first.scene, "{view} {axis}");
+                assert_eq!(closing.options, first.options, "{view} {axis}");
+                assert_eq!(first, seen(view), "{view} {axis}");
+                assert!(orbit.degrees_at(frames) == degrees);
+            }
+            // No repeated frame, but where the axis is the line of sight the picture turns.
+            let orbit = orbit(view, axis, 360.0, 8);
+            let frames: Vec<Resolved> = (0..8).map(|k| orbit.at(k).unwrap()).collect();
+            for a in 0..8 {
+                for b in 0..a {
+                    assert!(apart(&frames[a], &frames[b]) > 0.1, "{view} {axis} {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_camera_keeps_its_distance_target_and_lens() {
+    for view in VIEWS {
+        for axis in AXES {
+            let orbit = orbit(view, axis, 360.0, 11);
+            let first = orbit.at(0).unwrap();
+            let target = first.options.camera.target.unwrap().0;
+            for k in 0..11 {
+                let seen = orbit.at(k).unwrap();
+                let camera = &seen.scene.camera;
+                let distance = |seen: &Resolved| seen.scene.camera.eye_world().distance(target);
+                assert!((distance(&seen) - distance(&first)).abs() < 1e-12 * distance(&first));
+                let toward = (target - camera.eye_world()).normalize();
+                assert!(camera.forward().distance(toward) < 1e-12);
+                assert_eq!(camera.lens(), first.scene.camera.lens());
+                // What lies on the axis stays where it is in the picture's depth.
+                let along = |seen: &Resolved| {
+                    let eye = seen.scene.camera.eye_world();
+                    (eye - target).dot(orbit.axis())
+                };
+                assert!((along(&seen) - along(&first)).abs() < 1e-10);
+                // Everything but the camera is as it was.
+                let mut rest = seen.scene.clone();
+                rest.camera = first.scene.camera;
+                assert_eq!(rest, first.scene);
+            }
+        }
+    }
+}
+
+#[test]
+fn about_up_it_turns_as_azimuth_does_and_about_z_as_a_c_arm() {
+    for k in 0..9 {
+        let degrees = 40 * k;
+        let about_up = orbit("elevation = 0", "up", 360.0, 9).at(k).unwrap();
+        let named = seen(&format!("azimuth = {degrees}"));
+        assert!(apart(&about_up, &named) < 1e-12, "{degrees}");
+        // Raised, the eye stays as high about z.
+        let about_z = orbit("elevation = 20", "z", 360.0, 9).at(k).unwrap();
+        let named = seen(&format!("azimuth = {degrees}\nelevation = 20"));
+        assert!(apart(&about_z, &named) < 1e-12, "{degrees}");
+    }
+    // The controls: the other way round, and about the raised camera's own up, it is elsewhere.
+    let back = orbit("", "up", -360.0, 9).at(1).unwrap();
+    assert!(apart(&back, &seen("azimuth = 40")) > 0.1);
+    let about_up = orbit("elevation = 20", "up", 360.0, 9).at(2).unwrap();
+    assert!(apart(&about_up, &seen("azimuth = 80\nelevation = 20")) > 0.1);
+    // About right the eye goes down first: right-handed, too.
+    let about_right = orbit("", "right", 360.0, 9).at(1).unwrap();
+    assert!(apart(&about_right, &seen("elevation = -40")) < 1e-12);
+}
+
+#[test]
+fn axes_and_numbers_that_make_no_orbit_are_refused() {
+    for axis in ["", "w", "0,0,0", "1,2", "nan,0,1", "Up", "1,2,3,4"] {
+        let said = axis.parse::<OrbitAxis>().unwrap_err();
+        assert!(said.to_string().contains("is not an axis"), "{said}");
+        assert_eq!(said.exit_code(), 2);
+    }
+    let made = |degrees, frames| Orbit::new(seen(""), OrbitAxis::Up, degrees, frames);
+    for (degrees, frames) in [(360.0, 0), (360.0, Orbit::MOST_FRAMES + 1), (f64::NAN, 3)] {
+        assert_eq!(made(degrees, frames).unwrap_err().exit_code(), 2);
+    }
+    // The control.
+    assert_eq!(made(360.0, 3).unwrap().frames(), 3);
+    // A direction of any length.
+    assert_eq!("0,0,7".parse(), Ok(OrbitAxis::World(DVec3::Z)));
+}

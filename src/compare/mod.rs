@@ -222,6 +222,7 @@ impl Comparison<'_> {
                 ..Wanted::default()
             },
             seed: SEED,
+            elsewhere: &[],
         };
         let choice = choose(&task, renderer, self.progress)?;
         let how = choice.setting.options().clone();

@@ -2,7 +2,8 @@
 # Sets up what is missing, and nothing else. Safe to run again.
 #
 #   scripts/setup.sh        what running needs: Rust, a C linker, the OpenCL loader and a driver (PoCL)
-#   scripts/setup.sh test   and what the tests need: clang (kernel lint), oclgrind (kernel checks)
+#   scripts/setup.sh test   and what the tests need: clang (kernel lint), oclgrind (kernel checks),
+#                           Chromium (the report page)
 #
 # On Debian and Ubuntu, as root, from the distribution's packages. Elsewhere it says what to install.
 set -euo pipefail
@@ -36,6 +37,9 @@ have_driver() {
     done
     return 1
 }
+have_chromium() {
+    command -v chromium || command -v chromium-browser || command -v google-chrome
+} >/dev/null
 have_clang() { command -v clang >/dev/null || compgen -G '/usr/bin/clang-[0-9]*' >/dev/null; }
 
 missing=()
@@ -45,6 +49,7 @@ have_driver || missing+=(pocl-opencl-icd)
 if [ "${1:-}" = test ]; then
     have_clang || missing+=(clang)
     command -v oclgrind >/dev/null || missing+=(oclgrind)
+    have_chromium || missing+=(chromium)
 fi
 
 if [ ${#missing[@]} -eq 0 ]; then
@@ -54,17 +59,17 @@ fi
 case "$(uname -s)" in
 Linux) ;;
 Darwin)
-    say "missing: ${missing[*]} (Debian's names); install their like with Homebrew: brew install llvm oclgrind"
+    say "missing: ${missing[*]} (Debian's names); install their like with Homebrew: brew install llvm oclgrind, brew install --cask chromium"
     exit 1
     ;;
 *)
-    say "missing: ${missing[*]}; install an OpenCL driver for your device, such as PoCL, and clang"
+    say "missing: ${missing[*]}; install an OpenCL driver for your device, such as PoCL, clang and Chromium"
     exit 1
     ;;
 esac
 
 if ! command -v apt-get >/dev/null; then
-    say "missing: ${missing[*]} (Debian's names); install their like, on Fedora: dnf install ocl-icd pocl clang oclgrind"
+    say "missing: ${missing[*]} (Debian's names); install their like, on Fedora: dnf install ocl-icd pocl clang oclgrind chromium"
     exit 1
 fi
 if [ "$(id -u)" -ne 0 ]; then

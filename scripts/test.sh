@@ -7,8 +7,8 @@ scripts/setup.sh test
 # A cache of built kernels per checkout: runs of other versions cannot disturb it.
 export POCL_CACHE_DIR="${POCL_CACHE_DIR:-$PWD/target/pocl-cache}"
 mkdir -p "$POCL_CACHE_DIR"
-# Here tests that need OpenCL must not skip.
-export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}"
+# Here tests that need OpenCL or a browser must not skip.
+export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}" REQUIRE_CHROMIUM="${REQUIRE_CHROMIUM:-1}"
 
 cargo fmt --check
 cargo clippy --locked --all-targets -- -D warnings

@@ -6,8 +6,9 @@ mod common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 16] = [
+const EXPERIMENTS: [&str; 17] = [
     "vessels",
+    "pareto",
     "traversals",
     "convergence",
     "rays",

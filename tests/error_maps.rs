@@ -179,12 +179,12 @@ fn a_bar_shows_the_colours_of_the_map() {
     let map = depths();
     let stops = map.palette_stops();
     assert_eq!(stops[0], (0.0, BLUE));
-    assert_eq!(stops[16], (0.5, GREY));
-    assert_eq!(stops[32], (1.0, RED));
+    assert_eq!(stops[32], (0.5, GREY));
+    assert_eq!(stops[64], (1.0, RED));
     for (position, color) in &stops {
         assert_eq!(*color, cool_warm(2.0 * position - 1.0));
     }
-    // Between stops a browser interpolates in sRGB: within two levels of the map's colours.
+    // Between stops a browser interpolates in sRGB: within 2.5 levels of the map's colours.
     for pair in stops.windows(2) {
         let [a, b] = [pair[0].1, pair[1].1].map(|color| color.map(f64::from));
         let middle = cool_warm(pair[0].0 + pair[1].0 - 1.0);
@@ -224,11 +224,22 @@ fn a_few_outliers_or_a_few_differences_do_not_set_the_scale() {
 fn equal_pictures_are_grey_and_empty_ones_show_nothing() {
     let hit = with_depth(&[1.0, 2.0]);
     let equal = map(Quantity::Depth, &hit, &hit);
-    assert_eq!((equal.scale, equal.largest()), (1.0, Some(0.0)));
+    assert_eq!((equal.scale, equal.largest()), (0.01, Some(0.0)));
     assert_eq!(decoded(&equal.png().unwrap()).2, [GREY; 2]);
     let empty = map(Quantity::Depth, &row(2), &row(2));
-    assert_eq!((empty.scale, empty.largest()), (1.0, None));
+    assert_eq!((empty.scale, empty.largest()), (0.01, None));
     assert_eq!(decoded(&empty.png().unwrap()).2, [[119, 119, 119]; 2]);
+}
+
+/// What rounding leaves is not shown unless it is asked for.
+#[test]
+fn rounding_does_not_fill_a_map() {
+    let reference = with_depth(&[10.0; 3]);
+    let map = map(Quantity::Depth, &reference, &with_depth(&[10.000_01; 3]));
+    assert!(map.largest().unwrap() > 0.0);
+    assert_eq!(decoded(&map.png().unwrap()).2, [GREY; 3]);
+    let closer = map.with_scale(1e-5).unwrap();
+    assert_eq!(decoded(&closer.png().unwrap()).2, [RED; 3]);
 }
 
 #[test]

@@ -434,9 +434,10 @@ fn tubes() -> Volume {
         let p = DVec3::new(x.into(), y.into(), z.into());
         let inside = axes.map(|(on, along, radius)| {
             let away = (p - on).reject_from(along).length();
-            (1.5 - away / (2.0 * radius)).clamp(0.0, 1.0)
+            // Nowhere flat inside, where a normal would be anybody's choice.
+            (1.0 - away / (3.0 * radius)).max(0.0)
         });
-        voxels.push((1000.0 * inside.into_iter().fold(0.0, f64::max)) as i16);
+        voxels.push((1500.0 * inside.into_iter().fold(0.0, f64::max)) as i16);
     }
     let rescale = Rescale {
         slope: 0.5,
@@ -488,10 +489,6 @@ fn a_real_peer_draws_what_the_reference_draws() {
         phong: Some(matt),
         ..unlit.clone()
     };
-    let projection = |of| Picture::Projection {
-        of,
-        window: Window::new(-40.0, 430.0).unwrap(),
-    };
     let pictures = [
         Picture::Surface {
             iso: 200.0,
@@ -500,21 +497,29 @@ fn a_real_peer_draws_what_the_reference_draws() {
             color: Rgb([0.8, 0.4, 0.2]),
             phong: Some(Phong::default()),
         },
-        projection(Projection::Maximum),
-        projection(Projection::Minimum),
+        Picture::Projection {
+            of: Projection::Maximum,
+            window: Window::new(-40.0, 680.0).unwrap(),
+        },
         Picture::Emission(unlit),
         Picture::Emission(lit),
     ];
-    let lenses = [
-        Lens::Perspective { fov_deg: 30.0 },
-        Lens::Orthographic { height_mm: 20.0 },
+    let perspective = Lens::Perspective { fov_deg: 30.0 };
+    let distant = Light::Distant {
+        toward_light: DVec3::new(0.0, -0.6, 0.8),
+    };
+    let views = [
+        (perspective, Light::Headlight),
+        (Lens::Orthographic { height_mm: 20.0 }, Light::Headlight),
+        (perspective, distant),
     ];
     let (center, _) = volume.bounding_sphere();
     let eye = center + common::OBLIQUE.normalize() * 45.0;
     let scenes = pictures.iter().flat_map(|picture| {
-        lenses.map(|lens| Scene {
+        views.map(|(lens, light)| Scene {
             size: ImageSize::new(160, 120).unwrap(),
             camera: Camera::look_at(eye, center, DVec3::new(0.2, 0.1, 1.0), lens).unwrap(),
+            light,
             ..common::scene(&volume, 8, picture.clone())
         })
     });
@@ -540,9 +545,10 @@ fn a_real_peer_draws_what_the_reference_draws() {
                 depth_error(&truth, &frame, voxel_mm).unwrap()
             });
             let what = format!(
-                "{} {:?} {setting}: rmse {off:.4}, moved {off_moved:.4}, {depth:?} {:?}",
+                "{} {:?} {:?} {setting}: rmse {off:.4}, moved {off_moved:.4}, {depth:?} {:?}",
                 scene.picture.mode(),
                 scene.camera.lens(),
+                scene.light,
                 ready.note,
             );
             eprintln!("{what}");

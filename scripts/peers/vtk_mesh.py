@@ -31,7 +31,7 @@ class Mesh:
             self.notes += [note] if note else []
         else:
             prop.LightingOff()
-        add_light(renderer, told["toward_light"], at_eye=True)
+        add_light(renderer, told["toward_light"], at_eye="fov_deg" in told["camera"])
         if told["caps"] and volume.touches_faces(told["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         renderer.AddActor(actor)

@@ -121,16 +121,15 @@ class Gpu:
         self.mapper.SetDepthImageScalarTypeToFloat()
         prop = vtkVolumeProperty()
         set_look(self.mapper, prop, volume, told)
-        light = add_light(renderer, told["toward_light"], at_eye=False)
+        add_light(renderer, None, at_eye=False)
         if told["phong"]:
+            if told["toward_light"] is not None:
+                raise Unsupported("the GPU mapper is given a headlight only: it adds others' ambient light without the colour")
+            if "ortho_height_mm" in told["camera"]:
+                self.notes.append("its light falls from one point, not along each ray")
             prop.ShadeOn()
             note = set_phong(prop, told["phong"], has="phong")
             self.notes += [note] if note else []
-            if told["toward_light"] is not None:
-                # Its shader leaves the material's colour out of what such a light adds as ambient.
-                if told["mode"] != "iso":
-                    raise Unsupported("ambient light of a distant light has not the medium's colour")
-                light.SetAmbientColor(*told["color"])
         if told["mode"] == "iso" and told["caps"] and volume.touches_faces(told["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         show(renderer, volume, self.mapper, prop)

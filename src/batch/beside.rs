@@ -76,7 +76,11 @@ mod tests {
         });
         let mut taken = 0;
         let outcome = beside(failing, |things| {
-            things.try_for_each(|thing| thing.map(|_| taken += 1))
+            for thing in things {
+                thing?;
+                taken += 1;
+            }
+            Ok(())
         });
         assert_eq!(outcome.unwrap_err().to_string(), "no fourth");
         assert_eq!((made, taken), (4, 3));

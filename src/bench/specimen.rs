@@ -6,7 +6,9 @@ use rand_pcg::Pcg64;
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::scene::{Emission, Knot, Picture, Rgb, Scene, SceneOptions, Subject, TransferFunction};
+use crate::scene::{
+    Emission, Knot, Picture, Rgb, Scene, SceneOptions, Setting, Subject, TransferFunction,
+};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };
@@ -30,14 +32,29 @@ impl Specimen {
     /// # Errors
     /// What the text says is wrong, or cannot be of this volume.
     pub(super) fn scene(&self, side_px: u32, options: &str) -> Result<Scene> {
-        self.resolved(&format!(
-            "{}size = [{side_px}, {side_px}]\n{options}",
-            Self::VIEW
-        ))
+        self.resolved(&Self::viewed(side_px, options))
+    }
+
+    /// The same scene, its rays followed by a setting.
+    pub(super) fn scene_by(&self, side_px: u32, options: &str, setting: &Setting) -> Result<Scene> {
+        let seen = Self::parsed(&Self::viewed(side_px, options))?;
+        self.resolved_options(setting.over(&seen))
+    }
+
+    fn viewed(side_px: u32, options: &str) -> String {
+        format!("{}size = [{side_px}, {side_px}]\n{options}", Self::VIEW)
+    }
+
+    fn parsed(text: &str) -> Result<SceneOptions> {
+        SceneOptions::parse(text, "the experiment's scene")
     }
 
     /// The scene that the whole text of a scene file makes of this volume.
     pub(super) fn resolved(&self, text: &str) -> Result<Scene> {
+        self.resolved_options(Self::parsed(text)?)
+    }
+
+    fn resolved_options(&self, options: SceneOptions) -> Result<Scene> {
         let (center_world, radius_mm) = self.volume.bounding_sphere();
         let subject = Subject {
             center_world,
@@ -46,8 +63,7 @@ impl Specimen {
             otsu: self.iso,
             suggested_iso: self.iso,
         };
-        let options = SceneOptions::parse(text, "the experiment's scene")?.checked()?;
-        Ok(options.resolve(&subject)?.scene)
+        Ok(options.checked()?.resolve(&subject)?.scene)
     }
 
     /// The surface at [`Specimen::iso`], unshaded, so that casts are what is timed and not normals.

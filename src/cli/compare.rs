@@ -15,7 +15,9 @@ use crate::render::{Options, Renderer};
 use crate::report::Report;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::scene::{FilePath, Mode, SceneFile, SceneOptions, TransferChoice};
+use crate::scene::{
+    ErrorBound, FilePath, Mode, SceneFile, SceneOptions, ToleranceOptions, TransferChoice,
+};
 use crate::volume::files_of;
 
 use super::engine::{DeviceOptions, Engine};
@@ -34,7 +36,7 @@ use super::terminal::{message, note, to_stdout};
   angioray compare head.nrrd -o head
   angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
-  angioray compare head.nrrd -o head --peer 'target/peers/bin/python scripts/peers/vtk_peer.py'
+  angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
 A file of settings, for --configs:
   [[setting]]
@@ -51,6 +53,9 @@ pub struct CompareArguments {
 
     #[command(flatten)]
     compare: CompareOptions,
+
+    #[command(flatten)]
+    tolerance: ToleranceOptions,
 
     #[command(flatten)]
     device: DeviceOptions,
@@ -101,6 +106,8 @@ impl CompareArguments {
         let mut of_file = SceneOptions::of_file(&file)?;
         let mode_of_file = of_file.picture.mode.take();
         let options = self.options.over(of_file);
+        // Beside settings that are given: the one that it chooses is a contender like the others.
+        let bound = self.tolerance.over(file.group()?).max_error;
         let device = self.device.keep_of(file.group()?);
         let device = self.device.over(device);
 
@@ -148,10 +155,13 @@ impl CompareArguments {
             (None, Some(mode)) => vec![mode],
             (None, None) => MODES.to_vec(),
         };
-        let modes = modes
+        let mut modes = modes
             .into_iter()
             .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))
             .collect::<Result<Vec<ModeSettings>>>()?;
+        if let Some(bound) = bound {
+            add_bound(&mut modes, bound)?;
+        }
         for of_mode in &modes {
             let notes = of_mode.resolved.notes.iter();
             notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
@@ -245,6 +255,15 @@ fn mode_settings(
     let mut of_mode = ModeSettings::new(mode, options, settings, &loaded.subject)?;
     of_mode.add_given(options, &loaded.subject)?;
     Ok(of_mode)
+}
+
+/// Lets a bound choose a setting in every mode that has its metric.
+fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) -> Result<()> {
+    let added: Vec<Result<()>> = modes.iter_mut().map(|mode| mode.add_bound(bound)).collect();
+    match added.iter().any(Result::is_ok) {
+        true => Ok(()),
+        false => added.into_iter().collect(),
+    }
 }
 
 /// That no file of the comparison replaces one that it reads.

@@ -15,7 +15,7 @@ use super::load::{Loaded, ms_since};
 use super::progress::Bars;
 use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
-use super::tolerance::{ToleranceStats, note_of};
+use super::tolerance::ToleranceStats;
 
 /// Of the random tiles of `--max-error`: the same in every run.
 const SEED: u64 = 1;
@@ -56,7 +56,7 @@ impl RenderArguments {
             None => None,
         };
         if let Some(choice) = &choice {
-            note(note_of(choice));
+            note(choice);
             resolved = choice.resolved.clone();
         }
         let rendered = caster.render(&resolved.scene, wanted, &bars)?;

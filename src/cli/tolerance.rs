@@ -1,51 +1,9 @@
-//! `--max-error`: what was chosen, for the user and for the statistics.
+//! `--max-error`: what was chosen, for the statistics.
 
 use serde::Serialize;
 
-use crate::scene::options::concise;
-use crate::scene::{ErrorBound, ErrorMetric};
+use crate::scene::ErrorBound;
 use crate::tolerance::{CONFIDENCE, Choice};
-
-/// One sentence about a choice.
-pub fn note_of(choice: &Choice) -> String {
-    let Choice {
-        bound,
-        setting,
-        verified,
-        cost,
-        ..
-    } = choice;
-    let metric = bound.metric();
-    let limit = match metric {
-        ErrorMetric::Psnr => "at least",
-        _ => "at most",
-    };
-    let outcome = if choice.met {
-        format!("chose {}", setting.flags())
-    } else {
-        format!("nothing keeps it, {} is used", setting.flags())
-    };
-    let tiles = match (verified.tiles, choice.met) {
-        (0, _) => "every pixel was held against the reference".to_owned(),
-        (tiles, true) => format!("verified on {tiles} fresh tiles"),
-        (tiles, false) => format!("as {tiles} fresh tiles have it"),
-    };
-    format!(
-        "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
-         {tiles}; {} settings tried in {:.1} s",
-        concise(bound.bound()),
-        concise(rounded(choice.estimate)),
-        concise(rounded(choice.upper)),
-        100.0 * CONFIDENCE,
-        choice.tried.len(),
-        cost.ms / 1e3,
-    )
-}
-
-/// To three digits: more would not be known.
-fn rounded(figure: f64) -> f64 {
-    format!("{figure:.2e}").parse().unwrap_or(figure)
-}
 
 /// A choice in the statistics. Errors are in the metric's own unit, `null` where there is no number
 /// for them: the depth error of a picture that misses hits.

@@ -129,6 +129,9 @@ const ALL: &[Column] = &[
     }),
     SAMPLES_PER_RAY,
     NODES_PER_RAY,
+    ("host_peak_bytes", "host, bytes", Shown::Fixed(0), |row| {
+        row.memory.and_then(|memory| memory.host_peak_bytes).into()
+    }),
     ("device_bytes", "device, bytes", Shown::Fixed(0), |row| {
         row.memory.map(|memory| memory.device_bytes).into()
     }),
@@ -186,10 +189,10 @@ const VALUE_MAX: Column = (
     |row| row.error.and_then(|e| e.value?.max).into(),
 );
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
-    row.counts.map(|c| c.samples as f64 / c.rays as f64).into()
+    row.counts.map(|c| c.samples_per_ray()).into()
 });
 const NODES_PER_RAY: Column = ("nodes_per_ray", "nodes a ray", Shown::Fixed(1), |row| {
-    row.counts.map(|c| c.nodes as f64 / c.rays as f64).into()
+    row.counts.map(|c| c.nodes_per_ray()).into()
 });
 /// For people, the renderer only where it is another's.
 const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into());

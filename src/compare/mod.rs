@@ -17,8 +17,8 @@ pub use row::{PassMs, Row, RowFiles, RowMemory, RowTimes, Spread};
 use serde_json::Value;
 
 use crate::error::{Error, Result};
-use crate::frame::Frame;
 use crate::frame::error::figures;
+use crate::frame::{Frame, Wanted};
 use crate::measure::{
     FrameTime, Peer, PeerScene, Readiness, Tradeoff, Truth, Wrongness, built_in, family, front,
     judge, judged_planes, rounds, scale_of, time,
@@ -26,14 +26,17 @@ use crate::measure::{
 use crate::progress::Progress;
 use crate::render::Renderer;
 use crate::report::{self, Section};
-use crate::scene::{Mode, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::{ErrorBound, Mode, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::tolerance::{Choice, Task, choose};
 use crate::volume::Volume;
 
 use contender::Contender;
-use pictures::Planes;
 
 /// How rows call this renderer.
 const OURS: &str = "angioray";
+
+/// Of the tiles upon which a bound chooses.
+const SEED: u64 = 1;
 
 /// What is compared.
 pub struct Comparison<'a> {
@@ -56,6 +59,8 @@ pub struct ModeSettings {
     /// The scene of which the reference makes the truth.
     pub resolved: Resolved,
     settings: Vec<(Setting, Scene)>,
+    /// The cheapest setting that keeps it takes part.
+    bound: Option<ErrorBound>,
 }
 
 impl ModeSettings {
@@ -80,6 +85,7 @@ impl ModeSettings {
             mode,
             resolved,
             settings: Vec::new(),
+            bound: None,
         };
         for setting in settings {
             this.add(setting, subject)?;
@@ -105,6 +111,16 @@ impl ModeSettings {
             return Ok(());
         }
         self.add(Setting::new("as given", how)?, subject)
+    }
+
+    /// The setting that is chosen by a bound takes part too.
+    ///
+    /// # Errors
+    /// Usage: the mode has no such metric.
+    pub fn add_bound(&mut self, bound: ErrorBound) -> Result<()> {
+        bound.check(self.mode)?;
+        self.bound = Some(bound);
+        Ok(())
     }
 
     /// One setting more.
@@ -147,6 +163,13 @@ impl Comparison<'_> {
             let before = compared.rows.len();
             let (truth, reference) = self.truth(of_mode)?;
             let mut pictures = vec![reference];
+            let mut of_mode = of_mode.clone();
+            if let Some(choice) = self.choose(&mut of_mode, renderer)? {
+                compared
+                    .findings
+                    .push(format!("{}: {choice}", of_mode.mode));
+            }
+            let of_mode = &of_mode;
             let mut contenders = contenders(of_mode, peers);
             for (number, contender) in contenders.iter_mut().enumerate() {
                 let (mut row, frame) = self.contend(of_mode, contender, &truth, renderer, peers);
@@ -180,13 +203,42 @@ impl Comparison<'_> {
         Ok(compared)
     }
 
+    /// Adds the setting that a bound chooses, where there is a bound.
+    fn choose(
+        &self,
+        of_mode: &mut ModeSettings,
+        renderer: &mut Renderer,
+    ) -> Result<Option<Choice>> {
+        let Some(bound) = of_mode.bound else {
+            return Ok(None);
+        };
+        let task = Task {
+            volume: self.volume,
+            subject: &self.subject,
+            options: &of_mode.resolved.options.what(),
+            bound,
+            wanted: Wanted {
+                display: true,
+                ..Wanted::default()
+            },
+            seed: SEED,
+        };
+        let choice = choose(&task, renderer, self.progress)?;
+        let how = choice.setting.options().clone();
+        of_mode.add(
+            Setting::new(format!("max-error {bound}"), how)?,
+            &self.subject,
+        )?;
+        Ok(Some(choice))
+    }
+
     /// The reference's picture, as it is and as the report shows it.
     fn truth(&self, of_mode: &ModeSettings) -> Result<(Frame, report::Picture)> {
         let scene = &of_mode.resolved.scene;
         let wanted = judged_planes(&scene.picture);
         let frame = self.truth.frame(scene, wanted, self.progress)?.frame;
         let name = Folder::picture_name(scene.picture.mode(), 0, "reference");
-        let (png, _, _) = pictures::write(&self.folder, &name, &frame, Planes::All)?;
+        let (png, _, _) = pictures::write(&self.folder, &name, &frame)?;
         let picture = report::Picture {
             label: "reference".into(),
             caption: "in double precision, by definition".into(),
@@ -246,13 +298,9 @@ impl Comparison<'_> {
         frame: &Frame,
     ) -> Result<report::Picture> {
         let name = Folder::picture_name(row.mode, number, &row.title());
-        let planes = match row.renderer.as_str() {
-            OURS => Planes::All,
-            _ => Planes::Display,
-        };
         let scale = scale_of(self.volume);
         let (files, encode_ms, map) =
-            pictures::write_judged(&self.folder, &name, truth, frame, planes, scale)?;
+            pictures::write_judged(&self.folder, &name, truth, frame, scale)?;
         let picture = report::Picture {
             label: row.title(),
             caption: String::new(),

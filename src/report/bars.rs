@@ -9,7 +9,7 @@ use super::figure::figure;
 const COLORS: usize = 8;
 
 /// A part of the longest bar from which its figure fits into it, on a phone too.
-const WIDE_ENOUGH: f64 = 0.13;
+const WIDE_ENOUGH: f64 = 0.17;
 
 pub(super) fn html(bars: &Bars) -> Markup {
     let names = names(bars);

@@ -20,6 +20,7 @@ mod deviation;
 mod evidence;
 mod student;
 mod tiles;
+mod told;
 
 use std::time::Instant;
 

@@ -13,6 +13,7 @@ mod b8;
 mod b9;
 mod convergence;
 mod gradients;
+mod pareto;
 mod rays;
 mod traversals;
 mod vessels;
@@ -22,6 +23,7 @@ use super::Experiment;
 /// In the order in which they are listed.
 pub const EXPERIMENTS: &[Experiment] = &[
     vessels::EXPERIMENT,
+    pareto::EXPERIMENT,
     traversals::EXPERIMENT,
     convergence::EXPERIMENT,
     rays::EXPERIMENT,

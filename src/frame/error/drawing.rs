@@ -17,7 +17,8 @@ const COMPARED: f32 = 1.0;
 const MISSED: f32 = 2.0;
 const EXTRA: f32 = 3.0;
 
-/// Colours that the palette lacks, told apart by their lightness alone.
+/// The three colours of pixels without difference are far from all of the palette's, and told apart
+/// by their lightness alone.
 impl ErrorMap {
     pub const MISSED_COLOR: Rgb = [0, 0, 0];
     pub const EXTRA_COLOR: Rgb = [255, 213, 0];
@@ -77,10 +78,11 @@ impl ErrorMap {
         })
     }
 
-    /// The palette for a colour bar: where along it, 0 to 1, and the colour. 0 stands for −[`Self::scale`], or for 0 where differences have no sign, 1 for
-    /// +[`Self::scale`]. Between the stops browsers interpolate, off by less than a level or two.
+    /// The palette for a colour bar: where along it, 0 to 1, and the colour. 0 stands for
+    /// −[`Self::scale`], or for 0 where differences have no sign, 1 for +[`Self::scale`]. What
+    /// browsers interpolate between stops is within 2.5 of 255 levels.
     pub fn palette_stops(&self) -> Vec<(f64, Rgb)> {
-        const STEPS: usize = 32;
+        const STEPS: usize = 64;
         (0..=STEPS)
             .map(|k| {
                 let position = k as f64 / STEPS as f64;

@@ -46,7 +46,7 @@ class Scatter {
     }
     const legend = element('ul', { class: 'legend' }, ...items);
     if (!this.leftOut) return [legend];
-    const text = `${this.leftOut} without a figure for both axes ${this.leftOut === 1 ? 'is' : 'are'} in the table only.`;
+    const text = `Not shown, for want of a figure on one of the axes: ${this.leftOut}.`;
     return [legend, element('p', { class: 'left-out' }, text)];
   }
 

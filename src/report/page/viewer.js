@@ -116,7 +116,7 @@ class Viewer {
         choose();
       });
     });
-    this.gallery.parentElement.addEventListener('show-picture', (event) => {
+    this.gallery.addEventListener('show-picture', (event) => {
       const n = this.pictures.findIndex(({ label }) => label === event.detail);
       if (n >= 0) this.choose(this.left, n);
       this.gallery.scrollIntoView({ block: 'nearest' });

@@ -11,7 +11,7 @@ use super::words::Mode;
 use crate::error::{Error, Result};
 
 /// A figure by which a picture is held against the reference's of the same scene; as
-/// [`mod@crate::frame::error`] defines each.
+/// `frame::error` defines each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ErrorMetric {
     /// Colour, sRGB-encoded 0..1: the root of the mean square.

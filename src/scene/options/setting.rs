@@ -71,6 +71,11 @@ impl Setting {
         &self.name
     }
 
+    /// What it says.
+    pub fn options(&self) -> &SceneOptions {
+        &self.options
+    }
+
     /// `base` with its rays followed in this way; of the base's own ways nothing is left.
     pub fn over(&self, base: &SceneOptions) -> SceneOptions {
         self.options.clone().over(base.what())

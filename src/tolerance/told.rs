@@ -1,0 +1,52 @@
+//! A choice in a sentence.
+
+use std::fmt;
+
+use crate::scene::ErrorMetric;
+use crate::scene::options::concise;
+
+use super::{CONFIDENCE, Choice};
+
+/// What was chosen, how far off it is and how sure that is, and what finding it took.
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Choice {
+            bound,
+            setting,
+            verified,
+            cost,
+            ..
+        } = self;
+        let metric = bound.metric();
+        let limit = match metric {
+            ErrorMetric::Psnr => "at least",
+            _ => "at most",
+        };
+        let outcome = if self.met {
+            format!("chose {}", setting.flags())
+        } else {
+            format!("nothing keeps it, {} is used", setting.flags())
+        };
+        let tiles = match (verified.tiles, self.met) {
+            (0, _) => "every pixel was held against the reference".to_owned(),
+            (tiles, true) => format!("verified on {tiles} fresh tiles"),
+            (tiles, false) => format!("as {tiles} fresh tiles have it"),
+        };
+        write!(
+            f,
+            "max-error {metric}:{}: {outcome}: estimated {metric} {} ({limit} {} with {:.0} % confidence), \
+             {tiles}; {} settings tried in {:.1} s",
+            concise(bound.bound()),
+            concise(rounded(self.estimate)),
+            concise(rounded(self.upper)),
+            100.0 * CONFIDENCE,
+            self.tried.len(),
+            cost.ms / 1e3,
+        )
+    }
+}
+
+/// To three digits: more would not be known.
+fn rounded(figure: f64) -> f64 {
+    format!("{figure:.2e}").parse().unwrap_or(figure)
+}

@@ -8,27 +8,26 @@ use crate::frame::{self, Animation, AnimationFormat, Encoding, FrameRate, Reel, 
 use crate::measure::Counts;
 use crate::progress::{Progress, Silent};
 use crate::render::GradientFigures;
-use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::scene::{
-    AngleDeg, ErrorBound, FilePath, Orbit, OrbitAxis, Resolved, SceneOptions, Switch,
-};
+use crate::scene::{AngleDeg, Camera, FilePath, Orbit, OrbitAxis, Resolved, Switch};
 use crate::stop;
-use crate::tolerance::{Choice, Task, choose_for_views};
+use crate::tolerance::Cost;
 
 use super::engine::{Caster, Engine};
 use super::job::{Job, JobArguments};
-use super::load::Loaded;
 use super::outputs;
 use super::progress::Bars;
 use super::render::gradient_note;
 use super::stats::{
     self, DeviceStats, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times,
-    VERSION, ViewStats, VolumeStats,
+    VERSION, VolumeStats,
 };
 use super::terminal::{message, note};
-use super::tolerance::{SEED, ToleranceStats};
+use super::tolerance::{ToleranceStats, choose};
+
+/// Frames on which a choice by `--max-error` is verified beside the first.
+const VERIFIED_BESIDE: u32 = 3;
 
 /// Render a volume from all around: a picture per frame, or an animation
 #[derive(clap::Args)]
@@ -245,21 +244,14 @@ impl OrbitArguments {
             let mut caster = engine.caster(&loaded.volume, &prepared)?;
             if let Some(bound) = job.bound {
                 let wanted = Wanted::for_encoding(&plan.encoding, plan.stats.is_some());
-                chosen = choose(
-                    bound,
-                    &job.options,
-                    &loaded,
-                    &orbit,
-                    wanted,
-                    &mut caster,
-                    &bars,
-                )?;
+                let elsewhere = spread(&orbit)?;
+                let (options, caster) = (&job.options, &mut caster);
+                chosen = choose(bound, options, &loaded, wanted, &elsewhere, caster, &bars)?;
             }
-            if let Some(chosen) = &chosen {
-                let first = (chosen.choice.setting.over(&job.options).checked()?)
-                    .resolve(&loaded.subject)?;
+            if let Some(choice) = &chosen {
+                let first = choice.resolved.clone();
                 orbit = Orbit::new(first, plan.axis, plan.degrees, plan.frames)?;
-                plan.chosen = Some(chosen.choice.setting.flags());
+                plan.chosen = Some(choice.setting.flags());
             }
             written = plan.make(&orbit, &missing, &mut caster, &bars)?;
         }
@@ -269,6 +261,7 @@ impl OrbitArguments {
         let (Some(path), Some(last)) = (&plan.stats, written.last()) else {
             return Ok(());
         };
+        let choosing = (chosen.as_ref()).map_or(Cost::default(), |choice| choice.cost);
         let memory = Memory::now(
             written
                 .iter()
@@ -276,12 +269,15 @@ impl OrbitArguments {
                 .max()
                 .unwrap_or(0),
             last.about.gradients.map_or(0, |figures| figures.bytes),
-            written.iter().map(|w| w.about.uploaded_bytes).sum(),
+            written.iter().map(|w| w.about.uploaded_bytes).sum::<u64>() + choosing.uploaded_bytes,
         );
+        let times_ms = times_of_all(&written);
         let times_ms = Times {
             read: loaded.read_ms,
             smooth: loaded.smooth_ms,
-            ..times_of_all(&written)
+            build: times_ms.build + choosing.build_ms,
+            upload: times_ms.upload + choosing.upload_ms,
+            ..times_ms
         };
         let stats = OrbitStats {
             all: Stats {
@@ -295,7 +291,7 @@ impl OrbitArguments {
                 passes: passes_of_all(&written),
                 counts: written.iter().filter_map(|w| w.about.counts).sum(),
                 memory,
-                max_error: chosen.as_ref().map(|c| ToleranceStats::of(&c.choice)),
+                max_error: chosen.as_ref().map(ToleranceStats::of),
             },
             orbit: OrbitFigures {
                 frames: plan.frames,
@@ -303,7 +299,6 @@ impl OrbitArguments {
                 axis: orbit.axis().to_array(),
                 kept,
                 shard: plan.shard.to_string(),
-                verified: chosen.map_or(Vec::new(), |chosen| chosen.verified),
             },
             frames: written
                 .iter()
@@ -450,94 +445,19 @@ impl Plan {
     }
 }
 
-/// What an error bound chose for a whole orbit.
-struct Chosen {
-    choice: Choice,
-    verified: Vec<ViewStats>,
-}
-
-/// Chooses on the first frame, and on others that it does not hold for; verifies on frames from all
-/// around.
-fn choose(
-    bound: ErrorBound,
-    options: &SceneOptions,
-    loaded: &Loaded,
-    orbit: &Orbit,
-    wanted: Wanted,
-    caster: &mut Caster<'_>,
-    bars: &Bars,
-) -> Result<Option<Chosen>> {
-    let Caster::Device { renderer, .. } = caster else {
-        note(format_args!(
-            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
-        ));
-        return Ok(None);
-    };
-    let frames = looked_at(orbit.frames());
-    let seen_from = |&frame: &u32| {
-        Ok(SceneOptions {
-            camera: orbit.at(frame)?.options.camera,
-            ..options.clone()
-        })
-    };
-    let options: Vec<SceneOptions> = frames.iter().map(seen_from).collect::<Result<_>>()?;
-    let tasks: Vec<Task> = options
-        .iter()
-        .zip(SEED..)
-        .map(|(options, seed)| Task {
-            volume: &loaded.volume,
-            subject: &loaded.subject,
-            options,
-            bound,
-            wanted,
-            seed,
-        })
-        .collect();
-    let (mut choice, checks) = choose_for_views(&tasks, renderer, bars)?;
-    choice.met &= checks.iter().all(|check| check.met);
-    note(&choice);
-    let verified: Vec<ViewStats> = checks
-        .iter()
-        .map(|check| ViewStats {
-            frame: frames[check.view],
-            met: check.met,
-            estimate: check.estimate,
-            upper: check.upper,
-            tiles: check.verified.tiles,
-            rays: check.verified.rays,
-        })
-        .collect();
-    let others: Vec<String> = verified
-        .iter()
-        .map(|view| format!("frame {}: {}", view.frame, concise_estimate(view.estimate)))
-        .collect();
-    if !others.is_empty() {
-        note(format_args!(
-            "max-error on other frames, estimated {}: {}",
-            bound.metric(),
-            others.join(", ")
-        ));
-    }
-    Ok(Some(Chosen { choice, verified }))
-}
-
-/// To three digits.
-fn concise_estimate(figure: f64) -> String {
-    concise(format!("{figure:.2e}").parse().unwrap_or(figure))
-}
-
-/// The first frame, and others spread by the golden ratio: no two of them opposite each other,
-/// where projections are mirror images.
-fn looked_at(frames: u32) -> Vec<u32> {
+/// Where the camera is on frames spread over the orbit by the golden ratio: no two of them opposite
+/// each other, where projections are mirror images.
+fn spread(orbit: &Orbit) -> Result<Vec<Camera>> {
     const GOLDEN: f64 = 0.618_033_988_749_895;
-    let mut looked_at = Vec::new();
-    for k in 0..4 {
-        let frame = (f64::from(frames) * (f64::from(k) * GOLDEN).fract()) as u32;
-        if !looked_at.contains(&frame) {
-            looked_at.push(frame);
-        }
-    }
-    looked_at
+    let frames = f64::from(orbit.frames());
+    let at = |k: u32| (frames * (f64::from(k) * GOLDEN).fract()) as u32;
+    let mut spread: Vec<u32> = (1..=VERIFIED_BESIDE).map(at).collect();
+    spread.sort_unstable();
+    spread.dedup();
+    let frames = spread.into_iter().filter(|&frame| frame != 0);
+    frames
+        .map(|frame| Ok(orbit.at(frame)?.scene.camera))
+        .collect()
 }
 
 /// Sums over the frames; what was done once for all is counted once.

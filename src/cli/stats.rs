@@ -151,20 +151,6 @@ pub struct OrbitFigures {
     /// Frames that were there already.
     pub kept: usize,
     pub shard: String,
-    /// Frames on which what an error bound chose was verified, beside the one that decided.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub verified: Vec<ViewStats>,
-}
-
-/// How a choice did on a frame; errors in the metric's unit.
-#[derive(Serialize)]
-pub struct ViewStats {
-    pub frame: u32,
-    pub met: bool,
-    pub estimate: f64,
-    pub upper: f64,
-    pub tiles: usize,
-    pub rays: usize,
 }
 
 #[derive(Serialize)]

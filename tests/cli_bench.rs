@@ -6,7 +6,7 @@ mod common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 17] = [
+const EXPERIMENTS: [&str; 18] = [
     "vessels",
     "pareto",
     "traversals",
@@ -24,6 +24,7 @@ const EXPERIMENTS: [&str; 17] = [
     "b16",
     "b17",
     "b18",
+    "tolerance",
 ];
 
 #[test]

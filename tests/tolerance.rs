@@ -86,6 +86,7 @@ fn task<'a>(
             ..Wanted::default()
         },
         seed: 5,
+        elsewhere: &[],
     }
 }
 

@@ -36,7 +36,7 @@ use super::terminal::{message, note, to_stdout};
   angioray compare head.nrrd -o head
   angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
-  angioray compare head.nrrd -o head --peer 'target/peers/bin/python scripts/peers/vtk_peer.py'
+  angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
 A file of settings, for --configs:
   [[setting]]

@@ -6,19 +6,15 @@ use crate::error::Result;
 use crate::frame::{self, Wanted};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
-use crate::scene::{ErrorBound, SceneOptions};
-use crate::tolerance::{self, Choice, Cost, Task};
+use crate::tolerance::Cost;
 
-use super::engine::{Caster, Engine};
+use super::engine::Engine;
 use super::job::JobArguments;
-use super::load::{Loaded, ms_since};
+use super::load::ms_since;
 use super::progress::Bars;
 use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
-use super::tolerance::ToleranceStats;
-
-/// Of the random tiles of `--max-error`: the same in every run.
-const SEED: u64 = 1;
+use super::tolerance::{ToleranceStats, choose};
 
 /// Render a volume to a picture
 #[derive(clap::Args)]
@@ -52,11 +48,18 @@ impl RenderArguments {
         let prepared = engine.prepare(&loaded.volume, &job.source, &bars)?;
         let mut caster = engine.caster(&loaded.volume, &prepared)?;
         let choice = match job.bound {
-            Some(bound) => choose(bound, &job.options, &loaded, wanted, &mut caster, &bars)?,
+            Some(bound) => choose(
+                bound,
+                &job.options,
+                &loaded,
+                wanted,
+                &[],
+                &mut caster,
+                &bars,
+            )?,
             None => None,
         };
         if let Some(choice) = &choice {
-            note(choice);
             resolved = choice.resolved.clone();
         }
         let rendered = caster.render(&resolved.scene, wanted, &bars)?;
@@ -116,33 +119,6 @@ impl RenderArguments {
         };
         stats::write(&stats, path)
     }
-}
-
-/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
-/// what all errors are taken against: it needs no choice, whatever the bound.
-fn choose(
-    bound: ErrorBound,
-    options: &SceneOptions,
-    loaded: &Loaded,
-    wanted: Wanted,
-    caster: &mut Caster,
-    bars: &Bars,
-) -> Result<Option<Choice>> {
-    let Caster::Device { renderer, .. } = caster else {
-        note(format_args!(
-            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
-        ));
-        return Ok(None);
-    };
-    let task = Task {
-        volume: &loaded.volume,
-        subject: &loaded.subject,
-        options,
-        bound,
-        wanted,
-        seed: SEED,
-    };
-    tolerance::choose(&task, renderer, bars).map(Some)
 }
 
 /// What precomputed gradients cost and are worth.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
-use crate::measure::Counts;
+use crate::measure::{Counts, host_peak_bytes};
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
 use crate::volume::Volume;
@@ -129,14 +129,6 @@ impl Memory {
             uploaded_bytes,
         }
     }
-}
-
-/// Linux tells it in kB.
-fn host_peak_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
-    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
-    kilobytes.checked_mul(1024)
 }
 
 /// Of an orbit: the sums over the frames that were made, and each of them.

@@ -2,8 +2,49 @@
 
 use serde::Serialize;
 
-use crate::scene::ErrorBound;
-use crate::tolerance::{CONFIDENCE, Choice};
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::scene::{Camera, ErrorBound, SceneOptions};
+use crate::tolerance::{self, CONFIDENCE, Choice, Task};
+
+use super::engine::Caster;
+use super::load::Loaded;
+use super::progress::Bars;
+use super::terminal::note;
+
+/// Of the random tiles: the same in every run.
+const SEED: u64 = 1;
+
+/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
+/// what all errors are taken against: it needs no choice, whatever the bound. Told to the user.
+pub fn choose(
+    bound: ErrorBound,
+    options: &SceneOptions,
+    loaded: &Loaded,
+    wanted: Wanted,
+    elsewhere: &[Camera],
+    caster: &mut Caster,
+    bars: &Bars,
+) -> Result<Option<Choice>> {
+    let Caster::Device { renderer, .. } = caster else {
+        note(format_args!(
+            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+        ));
+        return Ok(None);
+    };
+    let task = Task {
+        volume: &loaded.volume,
+        subject: &loaded.subject,
+        options,
+        bound,
+        wanted,
+        seed: SEED,
+        elsewhere,
+    };
+    let choice = tolerance::choose(&task, renderer, bars)?;
+    note(&choice);
+    Ok(Some(choice))
+}
 
 /// A choice in the statistics. Errors are in the metric's own unit, `null` where there is no number
 /// for them: the depth error of a picture that misses hits.
@@ -24,6 +65,7 @@ pub struct ToleranceStats {
 
 #[derive(Serialize)]
 struct VerifiedStats {
+    views: usize,
     tiles: usize,
     rays: usize,
 }
@@ -61,6 +103,7 @@ impl ToleranceStats {
             upper: choice.upper,
             confidence: CONFIDENCE,
             verified: VerifiedStats {
+                views: choice.verified.views,
                 tiles: choice.verified.tiles,
                 rays: choice.verified.rays,
             },

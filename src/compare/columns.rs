@@ -129,6 +129,9 @@ const ALL: &[Column] = &[
     }),
     SAMPLES_PER_RAY,
     NODES_PER_RAY,
+    ("host_peak_bytes", "host, bytes", Shown::Fixed(0), |row| {
+        row.memory.and_then(|memory| memory.host_peak_bytes).into()
+    }),
     ("device_bytes", "device, bytes", Shown::Fixed(0), |row| {
         row.memory.map(|memory| memory.device_bytes).into()
     }),

@@ -31,7 +31,6 @@ use crate::tolerance::{Choice, Task, choose};
 use crate::volume::Volume;
 
 use contender::Contender;
-use pictures::Planes;
 
 /// How rows call this renderer.
 const OURS: &str = "angioray";
@@ -223,6 +222,7 @@ impl Comparison<'_> {
                 ..Wanted::default()
             },
             seed: SEED,
+            elsewhere: &[],
         };
         let choice = choose(&task, renderer, self.progress)?;
         let how = choice.setting.options().clone();
@@ -239,7 +239,7 @@ impl Comparison<'_> {
         let wanted = judged_planes(&scene.picture);
         let frame = self.truth.frame(scene, wanted, self.progress)?.frame;
         let name = Folder::picture_name(scene.picture.mode(), 0, "reference");
-        let (png, _, _) = pictures::write(&self.folder, &name, &frame, Planes::All)?;
+        let (png, _, _) = pictures::write(&self.folder, &name, &frame)?;
         let picture = report::Picture {
             label: "reference".into(),
             caption: "in double precision, by definition".into(),
@@ -299,13 +299,9 @@ impl Comparison<'_> {
         frame: &Frame,
     ) -> Result<report::Picture> {
         let name = Folder::picture_name(row.mode, number, &row.title());
-        let planes = match row.renderer.as_str() {
-            OURS => Planes::All,
-            _ => Planes::Display,
-        };
         let scale = scale_of(self.volume);
         let (files, encode_ms, map) =
-            pictures::write_judged(&self.folder, &name, truth, frame, planes, scale)?;
+            pictures::write_judged(&self.folder, &name, truth, frame, scale)?;
         let picture = report::Picture {
             label: row.title(),
             caption: String::new(),

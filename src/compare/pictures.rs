@@ -11,36 +11,20 @@ use crate::report;
 use super::folder::Folder;
 use super::row::RowFiles;
 
-/// What of a picture is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Planes {
-    /// The display alone: that of a peer, which tells no more.
-    Display,
-    /// The colour too, and what was judged.
-    All,
-}
-
-/// Writes a picture as PNG and, with all planes, as EXR; gives the names within the folder and what
-/// writing the PNG took, ms.
+/// Writes a picture as PNG and, with all its planes, as EXR; gives the names within the folder and
+/// what writing the PNG took, ms.
 ///
 /// # Errors
 /// The disk.
-pub fn write(
-    folder: &Folder,
-    name: &str,
-    frame: &Frame,
-    planes: Planes,
-) -> Result<(String, Option<String>, f64)> {
+pub fn write(folder: &Folder, name: &str, frame: &Frame) -> Result<(String, String, f64)> {
     let png = format!("{name}.png");
     let began = Instant::now();
     frame::write(&folder.file(&png), frame, &Encoding::new(Format::Png), &[])?;
     let encode_ms = began.elapsed().as_secs_f64() * 1e3;
-    let exr = (planes == Planes::All).then(|| format!("{name}.exr"));
-    if let Some(exr) = &exr {
-        let mut encoding = Encoding::new(Format::Exr);
-        encoding.layers = layers_of(frame);
-        frame::write(&folder.file(exr), frame, &encoding, &[])?;
-    }
+    let exr = format!("{name}.exr");
+    let mut encoding = Encoding::new(Format::Exr);
+    encoding.layers = layers_of(frame);
+    frame::write(&folder.file(&exr), frame, &encoding, &[])?;
     Ok((png, exr, encode_ms))
 }
 
@@ -67,10 +51,9 @@ pub fn write_judged(
     name: &str,
     truth: &Frame,
     frame: &Frame,
-    planes: Planes,
     scale: Scale,
 ) -> Result<(RowFiles, f64, ErrorMap)> {
-    let (png, exr, encode_ms) = write(folder, name, frame, planes)?;
+    let (png, exr, encode_ms) = write(folder, name, frame)?;
     let map = ErrorMap::new(quantity(truth, frame), truth, frame, scale)?;
     let error_png = format!("{name}-error.png");
     let error_exr = format!("{name}-error.exr");

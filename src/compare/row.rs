@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::frame::Frame;
 use crate::frame::error::Figures;
-use crate::measure::{Counts, FrameTime, Judged, Times};
+use crate::measure::{Counts, FrameTime, Judged, Times, host_peak_bytes};
 
 /// A row of the results; what is not known yet, or cannot be, is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -83,6 +83,8 @@ pub struct PassMs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RowMemory {
+    /// The most that the process held, the rows before this one included; unknown on some systems.
+    pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
     /// From host to device for this picture; with the first one of all, the volume too.
     pub uploaded_bytes: u64,
@@ -92,8 +94,7 @@ pub struct RowMemory {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct RowFiles {
     pub png: String,
-    /// Nothing of a peer, which shows encoded pixels only.
-    pub exr: Option<String>,
+    pub exr: String,
     pub error_png: String,
     pub error_exr: String,
 }
@@ -125,6 +126,7 @@ impl Row {
         self.error = Some(judged.figures);
         self.counts = Some(judged.counts);
         self.memory = Some(RowMemory {
+            host_peak_bytes: host_peak_bytes(),
             device_bytes: rendering.device_bytes,
             uploaded_bytes: rendering.uploaded_bytes,
         });

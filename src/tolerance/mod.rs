@@ -10,8 +10,8 @@
 //!    tiles of reference rays, until one is within the bound; with it those about as fast, which
 //!    are timed in turn.
 //! 3. *Verified*: the fastest of them (of equals the one of the least error) on fresh tiles, and by
-//!    the reference at the pixels where it is off most. What fails is out, and the next is looked
-//!    at.
+//!    the reference at the pixels where it is off most; where the camera moves, elsewhere on its
+//!    path too. What fails is out, and the next is looked at.
 //!
 //! Where nothing keeps the bound, the surest setting is taken, and said to be beyond the bound.
 
@@ -33,7 +33,7 @@ use crate::frame::Wanted;
 use crate::measure::interleaved;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::render::{Renderer, Rendering};
-use crate::scene::{ErrorBound, Picture, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::{Camera, ErrorBound, Picture, Resolved, Scene, SceneOptions, Setting, Subject};
 use crate::volume::Volume;
 
 use deviation::{Deviation, Figure};
@@ -74,6 +74,9 @@ pub struct Task<'a> {
     pub wanted: Wanted,
     /// Of the random tiles.
     pub seed: u64,
+    /// Other places of the camera where the same setting has to keep the bound: a choice is verified
+    /// at each.
+    pub elsewhere: &'a [Camera],
 }
 
 /// A setting that keeps the bound, or the surest one.
@@ -96,8 +99,10 @@ pub struct Choice {
 }
 
 /// Upon what a choice was verified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
+    /// Places of the camera.
+    pub views: usize,
     /// Fresh random ones; none where the tiles before were the whole picture.
     pub tiles: usize,
     /// The reference's, in these tiles.
@@ -198,6 +203,29 @@ struct Found {
     verified: Verified,
 }
 
+/// Another place of the camera, and what is known there once it was looked at.
+struct View<'a> {
+    /// Under the surest setting.
+    scene: &'a Scene,
+    evidence: Option<Evidence<'a>>,
+}
+
+impl<'a> View<'a> {
+    fn unseen(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            evidence: None,
+        }
+    }
+}
+
+/// What a choice is verified by.
+struct Verifying<'v, 'e> {
+    evidence: &'v mut Evidence<'e>,
+    views: &'v mut [View<'e>],
+    rays: usize,
+}
+
 struct Search<'s, 'a> {
     task: &'s Task<'s>,
     deviation: Deviation,
@@ -206,7 +234,7 @@ struct Search<'s, 'a> {
     cost: Cost,
 }
 
-impl Search<'_, '_> {
+impl<'s> Search<'s, '_> {
     /// The number of the surest candidate.
     fn surest(&self) -> usize {
         self.contenders.len() - 1
@@ -218,7 +246,11 @@ impl Search<'_, '_> {
             size,
             ..self.contenders[at].resolved.scene.clone()
         };
-        let rendering = self.renderer.render(&scene, wanted)?;
+        self.cast(&scene, wanted)
+    }
+
+    fn cast(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
+        let rendering = self.renderer.render(scene, wanted)?;
         self.cost.renderings += 1;
         self.cost.build_ms += rendering.build_ms;
         self.cost.upload_ms += rendering.upload_ms;
@@ -294,16 +326,21 @@ impl Search<'_, '_> {
         let size = self.size();
         let surest = self.surest();
         let surest_scene = self.contenders[surest].resolved.scene.clone();
-        let wanted = Wanted {
-            certificate: matches!(surest_scene.picture, Picture::Surface { .. }),
-            ..self.deviation.wanted()
-        };
-        let frame = self.render(surest, size, wanted)?.frame;
-        let mut evidence =
-            Evidence::new(self.deviation, task.volume, &surest_scene, frame, task.seed)?;
+        let elsewhere = task.elsewhere.iter().map(|&camera| Scene {
+            camera,
+            ..surest_scene.clone()
+        });
+        let elsewhere: Vec<Scene> = elsewhere.collect();
+        let mut evidence = self.evidence(&surest_scene)?;
+        let mut views: Vec<View> = elsewhere.iter().map(View::unseen).collect();
         let rays = (RAYS_SHARE * size.pixels() as f64) as usize;
         let rays = rays.clamp(RAYS[0], RAYS[1]);
         let sample = evidence.draw(rays);
+        let mut verifying = Verifying {
+            evidence: &mut evidence,
+            views: &mut views,
+            rays,
+        };
 
         let mut queue = queue.into_iter().peekable();
         let mut found = None;
@@ -319,7 +356,7 @@ impl Search<'_, '_> {
                 }
                 queue.next();
                 let frame = self.render(at, size, self.deviation.wanted())?.frame;
-                let judgement = evidence.judge(&frame, &sample);
+                let judgement = verifying.evidence.judge(&frame, &sample);
                 self.contenders[at].error = judgement.figure;
                 self.contenders[at].judged = true;
                 if judgement.upper <= self.deviation.limit() {
@@ -330,7 +367,7 @@ impl Search<'_, '_> {
                 self.time(&group, size)?;
             }
             for at in self.ranked(group) {
-                let candidate = self.verify(at, &mut evidence, rays)?;
+                let candidate = self.verify(at, &mut verifying)?;
                 if candidate.met {
                     found = Some(candidate);
                     break;
@@ -342,11 +379,31 @@ impl Search<'_, '_> {
             // Other tiles may have it otherwise: it was beyond the bound on some.
             None => Found {
                 met: false,
-                ..self.verify(surest, &mut evidence, rays)?
+                ..self.verify(surest, &mut verifying)?
             },
         };
-        self.cost.rays = evidence.rays();
+        let seen = views.iter().filter_map(|view| view.evidence.as_ref());
+        self.cost.rays = evidence.rays() + seen.map(Evidence::rays).sum::<u64>();
         Ok(found)
+    }
+
+    /// What the surest contender and the reference make of a scene.
+    fn evidence<'e>(&mut self, scene: &'e Scene) -> Result<Evidence<'e>>
+    where
+        's: 'e,
+    {
+        let wanted = Wanted {
+            certificate: matches!(scene.picture, Picture::Surface { .. }),
+            ..self.deviation.wanted()
+        };
+        let frame = self.cast(scene, wanted)?.frame;
+        Evidence::new(
+            self.deviation,
+            self.task.volume,
+            scene,
+            frame,
+            self.task.seed,
+        )
     }
 
     /// The fastest first; of those that are equally fast as the fastest left, the one of the least
@@ -365,25 +422,58 @@ impl Search<'_, '_> {
         ranked
     }
 
-    /// A contender by rays that had no say in choosing it.
-    fn verify(&mut self, at: usize, evidence: &mut Evidence, rays: usize) -> Result<Found> {
-        let size = self.size();
-        let frame = self.render(at, size, self.deviation.wanted())?.frame;
-        let sample: Sample = evidence.draw(rays);
-        evidence.ask_worst(&frame, WORST_RAYS);
-        let judgement = evidence.judge(&frame, &sample);
+    /// A contender by rays that had no say in choosing it, at every place of the camera: the error
+    /// where it is greatest. Ends where it is beyond the bound.
+    fn verify<'e>(&mut self, at: usize, by: &mut Verifying<'_, 'e>) -> Result<Found>
+    where
+        's: 'e,
+    {
+        let scene = self.contenders[at].resolved.scene.clone();
+        let limit = self.deviation.limit();
+        let mut verified = Verified::default();
+        let mut judgement = self.verify_in(&scene, by.evidence, by.rays, &mut verified)?;
+        for view in by.views.iter_mut() {
+            if judgement.upper > limit {
+                break;
+            }
+            let scene = Scene {
+                camera: view.scene.camera,
+                ..scene.clone()
+            };
+            let evidence = match &mut view.evidence {
+                Some(evidence) => evidence,
+                unseen => unseen.insert(self.evidence(view.scene)?),
+            };
+            let there = self.verify_in(&scene, evidence, by.rays, &mut verified)?;
+            judgement.figure = judgement.figure.max(there.figure);
+            judgement.upper = judgement.upper.max(there.upper);
+        }
         let contender = &mut self.contenders[at];
         contender.error = judgement.figure;
         contender.judged = true;
         Ok(Found {
             at,
-            met: judgement.upper <= self.deviation.limit(),
+            met: judgement.upper <= limit,
             judgement,
-            verified: Verified {
-                tiles: sample.len(),
-                rays: sample.iter().map(Vec::len).sum(),
-            },
+            verified,
         })
+    }
+
+    /// At one place of the camera.
+    fn verify_in(
+        &mut self,
+        scene: &Scene,
+        evidence: &mut Evidence,
+        rays: usize,
+        verified: &mut Verified,
+    ) -> Result<Judgement> {
+        let frame = self.cast(scene, self.deviation.wanted())?.frame;
+        let sample: Sample = evidence.draw(rays);
+        evidence.ask_worst(&frame, WORST_RAYS);
+        verified.views += 1;
+        verified.tiles += sample.len();
+        verified.rays += sample.iter().map(Vec::len).sum::<usize>();
+        Ok(evidence.judge(&frame, &sample))
     }
 
     fn choice(self, found: Found) -> Choice {

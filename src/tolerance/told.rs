@@ -27,10 +27,14 @@ impl fmt::Display for Choice {
         } else {
             format!("nothing keeps it, {} is used", setting.flags())
         };
+        let views = match verified.views {
+            1 => String::new(),
+            views => format!(" in {views} views"),
+        };
         let tiles = match (verified.tiles, self.met) {
             (0, _) => "every pixel was held against the reference".to_owned(),
-            (tiles, true) => format!("verified on {tiles} fresh tiles"),
-            (tiles, false) => format!("as {tiles} fresh tiles have it"),
+            (tiles, true) => format!("verified on {tiles} fresh tiles{views}"),
+            (tiles, false) => format!("as {tiles} fresh tiles{views} have it"),
         };
         write!(
             f,

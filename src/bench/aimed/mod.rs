@@ -1,7 +1,6 @@
 //! The adversarial test: rays aimed at the places where a cast loses surfaces, at small random
 //! volumes, every answer held against the reference.
 
-mod draws;
 mod rays;
 mod volumes;
 

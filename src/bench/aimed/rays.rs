@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::Target;
-use super::draws::Draws;
+use crate::bench::draws::Draws;
 
 /// What a ray is aimed at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::draws::Draws;
+use crate::bench::draws::Draws;
 use crate::error::Result;
 use crate::extent::Dims;
 use crate::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};

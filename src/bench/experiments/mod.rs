@@ -15,6 +15,7 @@ mod convergence;
 mod gradients;
 mod pareto;
 mod rays;
+mod tolerance;
 mod traversals;
 mod vessels;
 
@@ -28,6 +29,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
     convergence::EXPERIMENT,
     rays::EXPERIMENT,
     gradients::EXPERIMENT,
+    tolerance::EXPERIMENT,
     b1::EXPERIMENT,
     b2::EXPERIMENT,
     b3::EXPERIMENT,

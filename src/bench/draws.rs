@@ -1,4 +1,4 @@
-//! Random numbers for aiming: the same for the same seed everywhere.
+//! Random numbers: the same for the same seed everywhere.
 
 use glam::DVec3;
 use rand::{Rng, SeedableRng};
@@ -27,6 +27,11 @@ impl Draws {
 
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
+    }
+
+    /// Uniform in the logarithm; both ends positive.
+    pub(super) fn by_magnitude(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
     }
 
     /// Once in `n` times.

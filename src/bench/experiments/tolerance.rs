@@ -1,0 +1,358 @@
+//! Whether the settings that `--max-error` chooses keep their bounds, and how near they come to the
+//! fastest that would: random scenes, each against the whole picture of the reference.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::super::{Bench, Effort, Experiment, Outcome, random};
+use crate::error::Result;
+use crate::frame::error::{color_error, depth_error, value_error};
+use crate::frame::{Frame, Wanted, percentile};
+use crate::measure::interleaved;
+use crate::octree::{Leaf, Octree};
+use crate::progress::Silent;
+use crate::reference;
+use crate::render::Renderer;
+use crate::report::{Shown, Table};
+use crate::scene::{ErrorBound, ErrorMetric, Mode, Scene, SceneOptions, Subject};
+use crate::tolerance::{CONFIDENCE, Task, candidates, choose};
+use crate::volume::Volume;
+
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "tolerance",
+    about: "whether what --max-error chooses keeps its bound in random scenes, and how near it \
+            comes to the fastest setting that does",
+    takes_volumes: false,
+    counts_rays: false,
+    times_frames: false,
+    run,
+};
+
+const COLUMNS: [(&str, &str, Shown); 11] = [
+    ("mode", "mode", Shown::Short),
+    ("metric", "metric", Shown::Short),
+    ("scenes", "scenes", Shown::Fixed(0)),
+    ("met", "said to be kept", Shown::Fixed(0)),
+    ("kept", "kept", Shown::Fixed(0)),
+    ("within", "within the limit told", Shown::Fixed(0)),
+    ("in_vain", "kept though said not to be", Shown::Fixed(0)),
+    ("ratio_median", "time to the best, median", Shown::Fixed(2)),
+    ("ratio_p95", "p95", Shown::Fixed(2)),
+    ("choosing_ms", "choosing ms, median", Shown::Fixed(0)),
+    ("reference_rays", "reference rays, mean", Shown::Fixed(0)),
+];
+
+/// Scenes of one volume: it is uploaded, and its kernels built, once.
+const SCENES_A_VOLUME: u64 = 5;
+/// Settings that one rendering shows to be this many times slower than the best are not timed
+/// against it.
+const HOPELESS: f64 = 1.7;
+
+const MODES: [Mode; 6] = [
+    Mode::Iso,
+    Mode::Mip,
+    Mode::Dvr,
+    Mode::Mean,
+    Mode::Lmip,
+    Mode::Minip,
+];
+
+fn scenes(effort: Effort) -> u64 {
+    match effort {
+        Effort::Quick => 40,
+        Effort::Usual => 200,
+        Effort::Full => 500,
+    }
+}
+
+/// How one scene went.
+#[derive(Serialize, Deserialize)]
+struct Trial {
+    mode: Mode,
+    bound: ErrorBound,
+    /// Whether the choice was said to keep the bound, and whether it does.
+    met: bool,
+    kept: bool,
+    /// Whether its error is within the upper limit that was told.
+    within: bool,
+    /// Time of the chosen setting to that of the fastest that keeps the bound; where both do.
+    ratio: Option<f64>,
+    choosing_ms: f64,
+    rays: u64,
+    /// For the user, where the bound is not kept.
+    story: String,
+}
+
+fn run(bench: &Bench) -> Result<Outcome> {
+    let count = scenes(bench.effort);
+    let mut trials = Vec::new();
+    bench.progress.begin("tolerance", count);
+    for number in 0..count.div_ceil(SCENES_A_VOLUME) {
+        let scenes = number * SCENES_A_VOLUME..((number + 1) * SCENES_A_VOLUME).min(count);
+        let key = format!("volume {number}");
+        let of_volume: Vec<Trial> = bench.unit(&key, || of_volume(bench, number, scenes))?;
+        bench.progress.advance(of_volume.len() as u64);
+        trials.extend(of_volume);
+        bench.so_far(&outcome(bench, &trials))?;
+    }
+    bench.progress.end();
+    Ok(outcome(bench, &trials))
+}
+
+/// The trials of one random volume.
+fn of_volume(bench: &Bench, number: u64, scenes: Range<u64>) -> Result<Vec<Trial>> {
+    let (name, volume) = random::volume(number)?;
+    let octree = Octree::build(&volume, Leaf::default(), &Silent)?;
+    let mut renderer = Renderer::new(bench.device, &volume, &octree, bench.options)?;
+    let subject = random::subject(&volume);
+    scenes
+        .map(|scene| Asked::of(scene, &volume, &subject, bench)?.trial(&name, &mut renderer, bench))
+        .collect()
+}
+
+/// A random scene with a random bound.
+struct Asked<'a> {
+    number: u64,
+    volume: &'a Volume,
+    subject: &'a Subject,
+    options: SceneOptions,
+    mode: Mode,
+    bound: ErrorBound,
+}
+
+impl<'a> Asked<'a> {
+    /// Modes in turn, the metrics of each in turn.
+    fn of(number: u64, volume: &'a Volume, subject: &'a Subject, bench: &Bench) -> Result<Self> {
+        let mode = MODES[number as usize % MODES.len()];
+        let mut metrics = ErrorMetric::ALL.to_vec();
+        metrics.retain(|metric| metric.is_of(mode));
+        let turn = number as usize / MODES.len();
+        // Half as large as other experiments': hundreds of pictures are the reference's.
+        let side_px = bench.effort.side_px() / 2 + (number % 5) as u32 * 16;
+        let text = random::view(number, mode, side_px, subject);
+        Ok(Self {
+            number,
+            volume,
+            subject,
+            options: random::options(&text)?,
+            mode,
+            bound: random::bound(number, metrics[turn % metrics.len()])?,
+        })
+    }
+
+    fn trial(&self, name: &str, renderer: &mut Renderer, bench: &Bench) -> Result<Trial> {
+        let shown = Wanted {
+            display: true,
+            ..Wanted::default()
+        };
+        let task = Task {
+            volume: self.volume,
+            subject: self.subject,
+            options: &self.options,
+            bound: self.bound,
+            wanted: shown,
+            seed: self.number,
+            elsewhere: &[],
+        };
+        let choice = choose(&task, renderer, &Silent)?;
+        let chosen = &choice.resolved.scene;
+        let wanted = wanted(self.bound.metric());
+        let truth = reference::render(self.volume, chosen, wanted, &Silent)?;
+        let mut keeping = Vec::new();
+        let kept_by = |renderer: &mut Renderer, scene: &Scene| -> Result<(bool, f64)> {
+            let rendering = renderer.render(scene, wanted)?;
+            let figure = figure(self.bound.metric(), &truth, &rendering.frame, self.volume)?;
+            Ok((self.bound.is_met_by(figure), figure))
+        };
+        let (kept, figure) = kept_by(renderer, chosen)?;
+        for setting in candidates(self.mode)? {
+            let options = setting.over(&self.options).checked()?;
+            let scene = options.resolve(self.subject)?.scene;
+            if kept_by(renderer, &scene)?.0 {
+                let ms = renderer.render(&scene, shown)?.render_ms;
+                keeping.push((scene, ms));
+            }
+        }
+        let fastest = keeping
+            .iter()
+            .map(|(_, ms)| *ms)
+            .fold(f64::INFINITY, f64::min);
+        let mut timed = vec![chosen];
+        let hopeful = keeping.iter().filter(|(_, ms)| *ms <= HOPELESS * fastest);
+        timed.extend(hopeful.map(|(scene, _)| scene));
+        let ratio = if choice.met && kept && timed.len() > 1 {
+            let times = interleaved(&timed, bench.effort.repeats(), |scene| {
+                Ok(renderer.render(scene, shown)?.render_ms)
+            })?;
+            let best = times[1..].iter().map(|times| times.min_ms());
+            Some(times[0].min_ms() / best.fold(f64::INFINITY, f64::min))
+        } else {
+            None
+        };
+        Ok(Trial {
+            mode: self.mode,
+            bound: self.bound,
+            met: choice.met,
+            kept,
+            within: match self.bound.metric() {
+                ErrorMetric::Psnr => figure >= choice.upper,
+                _ => figure <= choice.upper,
+            },
+            ratio,
+            choosing_ms: choice.cost.ms,
+            rays: choice.cost.rays,
+            story: format!(
+                "scene {} ({name}, {}, {}): {} is off by {figure:.3e}, estimated {:.3e} and at most {:.3e}",
+                self.number,
+                self.mode,
+                self.bound,
+                choice.setting.flags(),
+                choice.estimate,
+                choice.upper
+            ),
+        })
+    }
+}
+
+/// The planes that a metric compares.
+fn wanted(metric: ErrorMetric) -> Wanted {
+    let geometry = matches!(metric, ErrorMetric::Depth | ErrorMetric::Missed);
+    Wanted {
+        display: !geometry && metric != ErrorMetric::Value,
+        depth: geometry,
+        value: metric == ErrorMetric::Value,
+        ..Wanted::default()
+    }
+}
+
+/// A metric's figure of whole pictures.
+fn figure(metric: ErrorMetric, truth: &Frame, frame: &Frame, volume: &Volume) -> Result<f64> {
+    Ok(match metric {
+        ErrorMetric::Rmse => color_error(truth, frame)?.rmse,
+        ErrorMetric::Max => color_error(truth, frame)?.max,
+        ErrorMetric::P99 => color_error(truth, frame)?.p99,
+        ErrorMetric::Psnr => color_error(truth, frame)?.psnr_db,
+        ErrorMetric::Depth | ErrorMetric::Missed => {
+            let error = depth_error(truth, frame, volume.geometry().smallest_spacing_mm())?;
+            let off = error.missed + error.extra;
+            match (metric, error.reference_hits) {
+                (ErrorMetric::Depth, _) if off > 0 => f64::INFINITY,
+                (ErrorMetric::Depth, _) => error.max.unwrap_or(0.0),
+                (_, 0) if off > 0 => f64::INFINITY,
+                (_, 0) => 0.0,
+                (_, hits) => off as f64 / hits as f64,
+            }
+        }
+        ErrorMetric::Value => {
+            let error = value_error(truth, frame, volume.range().width())?;
+            if error.missed + error.extra > 0 {
+                f64::INFINITY
+            } else {
+                error.max.unwrap_or(0.0)
+            }
+        }
+    })
+}
+
+fn outcome(bench: &Bench, trials: &[Trial]) -> Outcome {
+    let mut table = Table::new(&COLUMNS);
+    for mode in MODES {
+        for metric in ErrorMetric::ALL {
+            let of: Vec<&Trial> = trials
+                .iter()
+                .filter(|trial| (trial.mode, trial.bound.metric()) == (mode, metric))
+                .collect();
+            if of.is_empty() {
+                continue;
+            }
+            let count = |is: fn(&Trial) -> bool| of.iter().filter(|trial| is(trial)).count() as u64;
+            let ratios = || {
+                of.iter()
+                    .filter_map(|trial| trial.ratio)
+                    .collect::<Vec<_>>()
+            };
+            let mut choosing: Vec<f64> = of.iter().map(|trial| trial.choosing_ms).collect();
+            let rays = of.iter().map(|trial| trial.rays as f64).sum::<f64>();
+            table.push(vec![
+                mode.to_string().into(),
+                metric.name().into(),
+                (of.len() as u64).into(),
+                count(|trial| trial.met).into(),
+                count(|trial| trial.met && trial.kept).into(),
+                count(|trial| trial.within).into(),
+                count(|trial| !trial.met && trial.kept).into(),
+                percentile(&mut ratios(), 50).into(),
+                percentile(&mut ratios(), 95).into(),
+                percentile(&mut choosing, 50).into(),
+                (rays / of.len() as f64).into(),
+            ]);
+        }
+    }
+    let met = trials.iter().filter(|trial| trial.met);
+    let broken: Vec<&Trial> = met.clone().filter(|trial| !trial.kept).collect();
+    let met = met.count();
+    let kept = met - broken.len();
+    let share = kept as f64 / met.max(1) as f64;
+    let mut ratios: Vec<f64> = trials.iter().filter_map(|trial| trial.ratio).collect();
+    let mut findings = vec![
+        format!(
+            "of {} random scenes {met} have a setting that is said to keep the bound; in {kept} of \
+             them ({:.1} %) the whole picture of the reference agrees",
+            trials.len(),
+            100.0 * share
+        ),
+        format!(
+            "the chosen setting takes {:.2} (median) and {:.2} (p95) times as long as the fastest of \
+             the grid that keeps the bound",
+            percentile(&mut ratios, 50).unwrap_or(f64::NAN),
+            percentile(&mut ratios, 95).unwrap_or(f64::NAN)
+        ),
+    ];
+    let outside: Vec<&Trial> = trials.iter().filter(|trial| !trial.within).collect();
+    findings.push(format!(
+        "the error is within the limit told, which {:.0} of 100 should be, in {:.1} %",
+        100.0 * CONFIDENCE,
+        100.0 - 100.0 * outside.len() as f64 / trials.len() as f64
+    ));
+    findings.extend(outside.iter().map(|trial| trial.story.clone()));
+    findings.push(format!(
+        "times are the least of {} repeats in turn, on {}",
+        bench.effort.repeats(),
+        bench.device.info().name
+    ));
+    Outcome {
+        findings,
+        failure: (share < CONFIDENCE).then(|| {
+            format!(
+                "{} of {met} choices break the bound that they were said to keep: more than 1 %",
+                broken.len()
+            )
+        }),
+        ..Outcome::of(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_random_scene_makes_sense() {
+        for number in 0..120 {
+            let mode = MODES[number as usize % MODES.len()];
+            let (_, volume) = random::volume(number % 8).unwrap();
+            let subject = random::subject(&volume);
+            let text = random::view(number, mode, 64, &subject);
+            let options = random::options(&text).unwrap();
+            assert_eq!(options.mode(), mode);
+            options.resolve(&subject).unwrap();
+            for metric in ErrorMetric::ALL {
+                random::bound(number, metric).unwrap();
+            }
+            // The same number gives the same scene, another another.
+            assert_eq!(text, random::view(number, mode, 64, &subject));
+            assert_ne!(text, random::view(number + 1, mode, 64, &subject));
+        }
+    }
+}

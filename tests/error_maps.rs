@@ -235,10 +235,14 @@ fn equal_pictures_are_grey_and_empty_ones_show_nothing() {
 #[test]
 fn rounding_does_not_fill_a_map() {
     let reference = with_depth(&[10.0; 3]);
-    let map = map(Quantity::Depth, &reference, &with_depth(&[10.000_01; 3]));
+    let map = map(
+        Quantity::Depth,
+        &reference,
+        &with_depth(&[10.0_f32.next_up(); 3]),
+    );
     assert!(map.largest().unwrap() > 0.0);
     assert_eq!(decoded(&map.png().unwrap()).2, [GREY; 3]);
-    let closer = map.with_scale(1e-5).unwrap();
+    let closer = map.with_scale(1e-6).unwrap();
     assert_eq!(decoded(&closer.png().unwrap()).2, [RED; 3]);
 }
 

@@ -5,6 +5,7 @@ mod columns;
 mod configs;
 mod contender;
 mod folder;
+mod mode;
 mod page;
 mod pictures;
 mod row;
@@ -12,6 +13,7 @@ mod row;
 pub use columns::printed_table;
 pub use configs::Configs;
 pub use folder::Folder;
+pub use mode::ModeSettings;
 pub use row::{PassMs, Row, RowFiles, RowMemory, RowTimes, Spread};
 
 use serde_json::Value;
@@ -20,13 +22,13 @@ use crate::error::{Error, Result};
 use crate::frame::error::figures;
 use crate::frame::{Frame, Wanted};
 use crate::measure::{
-    FrameTime, Peer, PeerScene, Readiness, Tradeoff, Truth, Wrongness, built_in, family, front,
-    judge, judged_planes, rounds, scale_of, time,
+    FrameTime, Peer, PeerScene, Readiness, Tradeoff, Truth, Wrongness, family, front, judge,
+    judged_planes, rounds, scale_of, time,
 };
 use crate::progress::Progress;
 use crate::render::Renderer;
 use crate::report::{self, Section};
-use crate::scene::{ErrorBound, Mode, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::{Mode, Scene, Setting, Subject};
 use crate::tolerance::{Choice, Task, choose};
 use crate::volume::Volume;
 
@@ -50,92 +52,6 @@ pub struct Comparison<'a> {
     /// What results say beside their rows, for programs.
     pub about: Value,
     pub progress: &'a dyn Progress,
-}
-
-/// A mode, what is seen in it, and the settings in which it is rendered.
-#[derive(Debug, Clone)]
-pub struct ModeSettings {
-    pub mode: Mode,
-    /// The scene of which the reference makes the truth.
-    pub resolved: Resolved,
-    settings: Vec<(Setting, Scene)>,
-    /// The cheapest setting that keeps it takes part.
-    bound: Option<ErrorBound>,
-}
-
-impl ModeSettings {
-    /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
-    /// and how by each of `settings`, which are the built-in ones where there are none.
-    ///
-    /// # Errors
-    /// Usage: the options contradict each other, or a setting does not go with the mode.
-    pub fn new(
-        mode: Mode,
-        base: &SceneOptions,
-        settings: Option<Vec<Setting>>,
-        subject: &Subject,
-    ) -> Result<Self> {
-        let seen = Self::of_mode(mode, base).what();
-        let resolved = seen.checked()?.resolve(subject)?;
-        let settings = match settings {
-            Some(settings) => settings,
-            None => built_in(mode)?,
-        };
-        let mut this = Self {
-            mode,
-            resolved,
-            settings: Vec::new(),
-            bound: None,
-        };
-        for setting in settings {
-            this.add(setting, subject)?;
-        }
-        Ok(this)
-    }
-
-    /// What of `options` means something in a mode.
-    fn of_mode(mode: Mode, options: &SceneOptions) -> SceneOptions {
-        let mut of_mode = SceneOptions::default();
-        of_mode.picture.mode = Some(mode);
-        of_mode.over(options.clone())
-    }
-
-    /// One setting more: what `options` says, as far as it means something in the mode, of how rays
-    /// are followed. Nothing where it says nothing.
-    ///
-    /// # Errors
-    /// As [`Self::add`].
-    pub fn add_given(&mut self, options: &SceneOptions, subject: &Subject) -> Result<()> {
-        let how = Self::of_mode(self.mode, options).how();
-        if how == SceneOptions::default() {
-            return Ok(());
-        }
-        self.add(Setting::new("as given", how)?, subject)
-    }
-
-    /// The setting that is chosen by a bound takes part too.
-    ///
-    /// # Errors
-    /// Usage: the mode has no such metric.
-    pub fn add_bound(&mut self, bound: ErrorBound) -> Result<()> {
-        bound.check(self.mode)?;
-        self.bound = Some(bound);
-        Ok(())
-    }
-
-    /// One setting more.
-    ///
-    /// # Errors
-    /// Usage: it does not go with the mode.
-    pub fn add(&mut self, setting: Setting, subject: &Subject) -> Result<()> {
-        let options = setting.over(&self.resolved.options).checked();
-        let resolved = options.and_then(|options| options.resolve(subject));
-        let scene = resolved
-            .map_err(|error| error.at(format!("{}: setting '{}'", self.mode, setting.name())))?
-            .scene;
-        self.settings.push((setting, scene));
-        Ok(())
-    }
 }
 
 /// The rows of a comparison, and the files that it left.

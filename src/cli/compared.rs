@@ -1,0 +1,104 @@
+//! What a comparison says beside its rows: of the volume, the device, the way it was measured.
+
+use serde_json::json;
+
+use crate::compare::{Compared, Comparison};
+use crate::gpu::Device;
+use crate::measure::Peer;
+use crate::report::Report;
+
+use super::load::{Loaded, Source};
+use super::repeat::command_line;
+use super::stats::{DeviceStats, VERSION, VolumeStats};
+
+/// What the results say beside their rows.
+pub fn about(
+    device: &Device,
+    source: &Source,
+    loaded: &Loaded,
+    octree_ms: f64,
+    repeats: u32,
+) -> serde_json::Value {
+    json!({
+        "version": VERSION,
+        "command": "compare",
+        "command_line": command_line(),
+        "volume": VolumeStats::of(&source.path, &loaded.volume, loaded.non_finite),
+        "device": DeviceStats::from(device.info()),
+        "repeats": repeats,
+        "times_ms": {
+            "read": loaded.read_ms,
+            "smooth": loaded.smooth_ms,
+            "octree": octree_ms,
+        },
+    })
+}
+
+/// What the page says around the modes' sections.
+pub fn report(
+    comparison: &Comparison,
+    compared: Compared,
+    device: &Device,
+    source: &Source,
+    peers: &[Peer],
+) -> Report {
+    let volume = comparison.volume;
+    let name = source
+        .path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let [nx, ny, nz] = volume.dims().array();
+    let spacing = volume.geometry().spacing_mm();
+    let info = device.info();
+    let mut facts = vec![
+        ("Volume", name.to_string()),
+        (
+            "Voxels",
+            format!(
+                "{nx} × {ny} × {nz}, {}",
+                volume.voxels().voxel_type().name()
+            ),
+        ),
+        (
+            "Spacing",
+            format!("{:.4} × {:.4} × {:.4} mm", spacing.x, spacing.y, spacing.z),
+        ),
+        ("Device", info.name.clone()),
+        ("Driver", format!("{}, {}", info.platform, info.driver)),
+        ("Program", format!("angioray {VERSION}")),
+        (
+            "Protocol",
+            format!(
+                "one frame to warm up, then {} in turn; medians",
+                comparison.repeats
+            ),
+        ),
+    ];
+    if let Some(size) = comparison
+        .modes
+        .first()
+        .map(|mode| mode.resolved.scene.size)
+    {
+        facts.insert(3, ("Pictures", format!("{size} pixels")));
+    }
+    for peer in peers {
+        let text = format!("{}, {}", peer.version(), peer.device());
+        facts.push(("Compared with", format!("{} {text}", peer.name())));
+    }
+    Report {
+        title: format!("{name}: speed against error"),
+        summary: "Every picture here was drawn several ways and held against a reference that \
+            solves the picture by its definition, in double precision. Points further down are \
+            nearer to the truth, points further left are faster; the line joins the settings that \
+            nothing beats in both."
+            .into(),
+        facts: facts
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect(),
+        command: command_line(),
+        findings: compared.findings,
+        sections: compared.sections,
+    }
+}

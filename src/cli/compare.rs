@@ -41,13 +41,13 @@ A file of settings, for --configs:
   probe = \"off\"")]
 pub struct CompareArguments {
     #[command(flatten)]
+    compare: CompareOptions,
+
+    #[command(flatten)]
     options: SceneOptions,
 
     #[command(flatten)]
     scene: SceneArgument,
-
-    #[command(flatten)]
-    compare: CompareOptions,
 
     #[command(flatten)]
     tolerance: ToleranceOptions,

@@ -1,10 +1,14 @@
 //! What a scene's way of following rays is called in plots.
 
-use crate::scene::{Picture, QuadratureMethod, SamplingMethod, Scene};
+use crate::scene::{Filter, Picture, QuadratureMethod, SamplingMethod, Scene};
 
-/// The rule of quadrature of an integral, how anything else is sampled.
+/// The rule of quadrature of an integral, how anything else is sampled; the nearest filter, whose
+/// picture is of another field, before both.
 pub fn family(scene: &Scene) -> String {
     let sampling = &scene.sampling;
+    if sampling.filter == Filter::Nearest {
+        return "nearest".into();
+    }
     match &scene.picture {
         Picture::Emission(medium) => match medium.quadrature.method {
             QuadratureMethod::Adaptive => "adaptive".into(),

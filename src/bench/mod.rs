@@ -239,7 +239,7 @@ pub struct Experiment {
     pub takes_volumes: bool,
     /// Whether [`Bench::rays`] is.
     pub counts_rays: bool,
-    /// Whether [`Bench::protocol`] is.
+    /// Whether the protocol under which frames are timed is.
     pub times_frames: bool,
     pub run: fn(&Bench) -> Result<Outcome>,
 }

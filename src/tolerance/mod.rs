@@ -2,7 +2,7 @@
 //!
 //! A device renders a whole picture in the time in which the reference casts a few hundred rays. So
 //! every candidate is rendered whole, a small picture of the same view first; the reference's rays
-//! are spent on what the device cannot know ([`evidence`] says how the two are put together):
+//! are spent on what the device cannot know (`evidence` says how the two are put together):
 //!
 //! 1. *Screened* in a small picture: each candidate's error against the device's surest picture, then
 //!    the times of those within the bound, in turn.

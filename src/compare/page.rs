@@ -146,7 +146,7 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: nothing is both faster and nearer to the truth than {settings}; {}, in {}",
+            "{mode}: nothing beats, in both time and {} ({}): {settings}",
             wrongness.title, wrongness.unit
         )
     })

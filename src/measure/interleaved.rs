@@ -33,6 +33,13 @@ impl Times {
         middle(self.rounds.iter().map(|ms| (ms - median).abs()).collect())
     }
 
+    /// These rounds and then `later` ones.
+    #[must_use]
+    pub fn and(mut self, later: Self) -> Self {
+        self.rounds.extend(later.rounds);
+        self
+    }
+
     pub fn repeats(&self) -> usize {
         self.rounds.len()
     }

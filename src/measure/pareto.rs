@@ -9,7 +9,7 @@ pub struct Tradeoff {
 
 /// Times nearer to each other than this share are equal: as near as interleaved repeats on a
 /// shared machine tell them apart.
-pub const TIME_NOISE: f64 = 0.05;
+pub const TIME_NOISE: f64 = 0.1;
 
 /// The Pareto front of `points`: for each, whether it is on it.
 ///
@@ -63,11 +63,11 @@ mod tests {
 
     #[test]
     fn noise_makes_no_front() {
-        // As fast within 5 %: the less wrong stands alone.
-        assert_eq!(of(&[(1.00, 2.0), (1.03, 1.0)]), [1]);
-        assert_eq!(of(&[(1.00, 2.0), (1.06, 1.0)]), [0, 1]);
+        // As fast within 10 %: the less wrong stands alone.
+        assert_eq!(of(&[(1.00, 2.0), (1.08, 1.0)]), [1]);
+        assert_eq!(of(&[(1.00, 2.0), (1.12, 1.0)]), [0, 1]);
         // Equally wrong: the first of those as fast as the fastest.
-        assert_eq!(of(&[(1.2, 1.0), (1.03, 1.0), (1.0, 1.0)]), [1]);
+        assert_eq!(of(&[(1.2, 1.0), (1.08, 1.0), (1.0, 1.0)]), [1]);
     }
 
     #[test]

@@ -58,7 +58,12 @@ impl Store {
             return Ok(found);
         }
         self.check_stop()?;
-        let found = compute()?;
+        let found = compute().or_else(|failure| {
+            // A signal while kernels are built makes LLVM remove the files that it is writing, so
+            // that the build fails: that is the stop, not a fault.
+            self.check_stop()?;
+            Err(failure)
+        })?;
         self.journal.borrow_mut().keep(key, &found)?;
         Ok(found)
     }

@@ -360,7 +360,13 @@ impl Plan {
                 return Err(self.stopped(made, missing.len()));
             }
             let seen = orbit.at(index)?;
-            let rendered = caster.render(&seen.scene, wanted, &Silent)?;
+            let rendered = caster.render(&seen.scene, wanted, &Silent);
+            // A signal while kernels are built makes LLVM remove the files that it is writing, so
+            // that the build fails: that is the stop, not a fault.
+            let rendered = rendered.map_err(|failure| match stop::asked() {
+                true => self.stopped(made, missing.len()),
+                false => failure,
+            })?;
             bars.advance(1);
             Ok(Shot {
                 index,

@@ -49,6 +49,9 @@ const SCENES_A_VOLUME: u64 = 5;
 /// against it.
 const HOPELESS: f64 = 1.7;
 
+/// Of colour differences, so tight that the grid holds every adaptive bound.
+const ANY_LIMIT: f64 = 0.0;
+
 const MODES: [Mode; 6] = [
     Mode::Iso,
     Mode::Mip,
@@ -166,7 +169,7 @@ impl<'a> Asked<'a> {
             Ok((self.bound.is_met_by(figure), figure))
         };
         let (kept, figure) = kept_by(renderer, chosen)?;
-        for setting in candidates(self.mode)? {
+        for setting in candidates(self.mode, ANY_LIMIT)?.concat() {
             let options = setting.over(&self.options).checked()?;
             let scene = options.resolve(self.subject)?.scene;
             if kept_by(renderer, &scene)?.0 {

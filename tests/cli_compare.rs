@@ -227,7 +227,11 @@ fn wrong_usage_is_refused_before_the_work() {
             "no folder for the comparison was named",
         ),
         ("compare -o out", 2, "no volume was named"),
-        ("compare ball.nrrd -o out --mode iso", 2, "--modes iso"),
+        (
+            "compare ball.nrrd -o out --mode iso --modes mip",
+            2,
+            "'--modes' and '--mode' exclude each other",
+        ),
         (
             "compare ball.nrrd -o out --modes iso,iso",
             2,

@@ -65,8 +65,7 @@ group! {
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
-        /// The modes, with commas between [default: iso,mip,lmip,dvr; that of the scene file where
-        /// it has one]
+        /// The modes, with commas between [default: the one of --mode, else iso,mip,lmip,dvr]
         #[arg(long, value_name = "LIST")]
         modes: Modes,
 
@@ -95,23 +94,22 @@ const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
 
 impl CompareArguments {
-    pub fn run(self) -> Result<()> {
+    pub fn run(mut self) -> Result<()> {
+        let named = Named::take(&mut self.compare, &mut self.options);
+        named.check()?;
         let file = self.scene.open()?;
-        let compare = self.compare.over(CompareOptions::of_file(&file)?);
-        let mut of_file = SceneOptions::of_file(&file)?;
-        let mode_of_file = of_file.picture.mode.take();
-        let options = self.options.over(of_file);
+        let mut compare = CompareOptions::of_file(&file)?;
+        let mut options = SceneOptions::of_file(&file)?;
+        let of_file = Named::take(&mut compare, &mut options);
+        let modes = named.modes().or_else(|| of_file.modes());
+        let modes = modes.unwrap_or_else(|| MODES.to_vec());
+        let compare = self.compare.over(compare);
+        let options = self.options.over(options);
         // Beside settings that are given: the one that it chooses is a contender like the others.
         let bound = self.tolerance.over(file.group()?).max_error;
         let device = self.device.keep_of(file.group()?);
         let device = self.device.over(device);
 
-        if let Some(mode) = options.picture.mode {
-            return Err(
-                Error::usage("'--mode' is of one picture, and a comparison has several")
-                    .hint(format!("write --modes {mode}")),
-            );
-        }
         let Some(FilePath(output)) = &compare.output else {
             return Err(Error::usage("no folder for the comparison was named")
                 .hint("give it by '--output', or as 'output' in the scene file"));
@@ -145,11 +143,6 @@ impl CompareArguments {
 
         let bars = Bars::new();
         let loaded = source.load(&bars)?;
-        let modes = match (compare.modes, mode_of_file) {
-            (Some(Modes(modes)), _) => modes,
-            (None, Some(mode)) => vec![mode],
-            (None, None) => MODES.to_vec(),
-        };
         let mut modes = modes
             .into_iter()
             .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))
@@ -161,6 +154,7 @@ impl CompareArguments {
             let notes = of_mode.resolved.notes.iter();
             notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
         }
+        folder.make()?;
         for peer in &mut peers {
             peer.load(&loaded.volume)?;
         }
@@ -237,6 +231,34 @@ impl FromStr for Modes {
 }
 
 readable!(Modes);
+
+/// The modes that are named: several, or one.
+struct Named(Option<Modes>, Option<Mode>);
+
+impl Named {
+    /// Takes them out of the options, whose modes are those of a single picture.
+    fn take(compare: &mut CompareOptions, options: &mut SceneOptions) -> Self {
+        Self(compare.modes.take(), options.picture.mode.take())
+    }
+
+    /// # Errors
+    /// Usage: both, and not the same.
+    fn check(&self) -> Result<()> {
+        match self {
+            Self(Some(Modes(modes)), Some(mode)) if modes != &[*mode] => Err(Error::usage(
+                "'--modes' and '--mode' exclude each other: both say what is compared",
+            )
+            .hint("leave out '--mode'")),
+            _ => Ok(()),
+        }
+    }
+
+    fn modes(self) -> Option<Vec<Mode>> {
+        let Self(several, one) = self;
+        let several = several.map(|Modes(modes)| modes);
+        several.or_else(|| Some(vec![one?]))
+    }
+}
 
 /// A mode in its settings: those of the file, or the built-in ones, and what the flags say of how
 /// rays are followed as a further one.

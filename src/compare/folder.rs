@@ -20,21 +20,30 @@ pub struct Folder {
 impl Folder {
     const PICTURES: &str = "pictures";
 
-    /// Makes it where there is none.
+    /// One that may be there already. Makes nothing yet.
     ///
     /// # Errors
-    /// It cannot be made, or takes no files.
+    /// It is there and takes no files.
     pub fn new(path: &Path) -> Result<Self> {
         let folder = Self {
             path: path.to_owned(),
         };
-        let pictures = path.join(Self::PICTURES);
-        std::fs::create_dir_all(&pictures)
-            .map_err(|cause| Error::io(&pictures, "make the folder", &cause))?;
-        for file in [folder.json(), folder.csv(), folder.report()] {
-            check_writable(&file)?;
+        if path.exists() {
+            for file in [folder.json(), folder.csv(), folder.report()] {
+                check_writable(&file)?;
+            }
         }
         Ok(folder)
+    }
+
+    /// Makes it where there is none.
+    ///
+    /// # Errors
+    /// The disk.
+    pub fn make(&self) -> Result<()> {
+        let pictures = self.path.join(Self::PICTURES);
+        std::fs::create_dir_all(&pictures)
+            .map_err(|cause| Error::io(&pictures, "make the folder", &cause))
     }
 
     pub fn json(&self) -> PathBuf {

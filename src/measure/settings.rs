@@ -182,18 +182,9 @@ mod tests {
     use super::*;
     use crate::scene::SceneOptions;
 
-    const MODES: [Mode; 6] = [
-        Mode::Iso,
-        Mode::Mip,
-        Mode::Lmip,
-        Mode::Minip,
-        Mode::Mean,
-        Mode::Dvr,
-    ];
-
     #[test]
     fn every_setting_suits_its_mode_and_has_a_name_of_its_own() {
-        for mode in MODES {
+        for mode in Mode::ALL {
             let base = SceneOptions::parse(&format!("mode = '{mode}'"), "base").unwrap();
             for settings in [built_in(mode), grid(mode, false), grid(mode, true)] {
                 let settings = settings.unwrap();
@@ -217,7 +208,7 @@ mod tests {
 
     #[test]
     fn the_whole_grid_holds_the_grid() {
-        for mode in MODES {
+        for mode in Mode::ALL {
             let names = |settings: Vec<Setting>| -> Vec<String> {
                 settings
                     .iter()

@@ -52,15 +52,6 @@ const HOPELESS: f64 = 1.7;
 /// Of colour differences, so tight that the grid holds every adaptive bound.
 const ANY_LIMIT: f64 = 0.0;
 
-const MODES: [Mode; 6] = [
-    Mode::Iso,
-    Mode::Mip,
-    Mode::Dvr,
-    Mode::Mean,
-    Mode::Lmip,
-    Mode::Minip,
-];
-
 fn scenes(effort: Effort) -> u64 {
     match effort {
         Effort::Quick => 40,
@@ -127,10 +118,10 @@ struct Asked<'a> {
 impl<'a> Asked<'a> {
     /// Modes in turn, the metrics of each in turn.
     fn of(number: u64, volume: &'a Volume, subject: &'a Subject, bench: &Bench) -> Result<Self> {
-        let mode = MODES[number as usize % MODES.len()];
+        let mode = Mode::ALL[number as usize % Mode::ALL.len()];
         let mut metrics = ErrorMetric::ALL.to_vec();
         metrics.retain(|metric| metric.is_of(mode));
-        let turn = number as usize / MODES.len();
+        let turn = number as usize / Mode::ALL.len();
         // Half as large as other experiments': hundreds of pictures are the reference's.
         let side_px = bench.effort.side_px() / 2 + (number % 5) as u32 * 16;
         let text = random::view(number, mode, side_px, subject);
@@ -260,7 +251,7 @@ fn figure(metric: ErrorMetric, truth: &Frame, frame: &Frame, volume: &Volume) ->
 
 fn outcome(bench: &Bench, trials: &[Trial]) -> Outcome {
     let mut table = Table::new(&COLUMNS);
-    for mode in MODES {
+    for mode in Mode::ALL {
         for metric in ErrorMetric::ALL {
             let of: Vec<&Trial> = trials
                 .iter()
@@ -343,7 +334,7 @@ mod tests {
     #[test]
     fn every_random_scene_makes_sense() {
         for number in 0..120 {
-            let mode = MODES[number as usize % MODES.len()];
+            let mode = Mode::ALL[number as usize % Mode::ALL.len()];
             let (_, volume) = random::volume(number % 8).unwrap();
             let subject = random::subject(&volume);
             let text = random::view(number, mode, 64, &subject);

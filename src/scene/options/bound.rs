@@ -291,15 +291,6 @@ impl SceneOptions {
 mod tests {
     use super::*;
 
-    const MODES: [Mode; 6] = [
-        Mode::Iso,
-        Mode::Mip,
-        Mode::Lmip,
-        Mode::Minip,
-        Mode::Mean,
-        Mode::Dvr,
-    ];
-
     #[test]
     fn bounds_parse_and_print() {
         for (text, bound, printed) in [
@@ -357,7 +348,7 @@ mod tests {
         };
         assert_eq!(names(Mode::Iso), "rmse max p99 psnr depth missed");
         assert_eq!(names(Mode::Dvr), "rmse max p99 psnr");
-        for mode in MODES {
+        for mode in Mode::ALL {
             for metric in ErrorMetric::ALL {
                 let bound = ErrorBound::new(metric, 0.5).unwrap();
                 assert_eq!(bound.check(mode).is_ok(), metric.is_of(mode));

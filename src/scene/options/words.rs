@@ -48,6 +48,18 @@ pub enum Mode {
     Mean,
     Dvr,
 }
+impl Mode {
+    /// In the order in which help and tables name them.
+    pub const ALL: [Self; 6] = [
+        Self::Iso,
+        Self::Mip,
+        Self::Lmip,
+        Self::Minip,
+        Self::Mean,
+        Self::Dvr,
+    ];
+}
+
 words!(Mode, "a mode": Iso = "iso", Mip = "mip", Lmip = "lmip", Minip = "minip", Mean = "mean",
     Dvr = "dvr");
 

@@ -1,7 +1,7 @@
 //! Writing a file whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Seek};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
@@ -20,6 +20,26 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Destination::Special => Ok(()),
         Destination::File { target, .. } => temporary_beside(path, &target).map(drop),
     }
+}
+
+/// That files can be written into a folder, or that it can be made where it is not there yet, as far as
+/// can be told without making it.
+///
+/// # Errors
+/// What is there is no folder, or takes no files.
+pub fn check_folder(path: &Path) -> Result<()> {
+    let mut there = path;
+    while !there.exists() {
+        there = match there.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+    }
+    if !there.is_dir() {
+        let cause = io::Error::from(io::ErrorKind::NotADirectory);
+        return Err(Error::io(path, "make the folder", &cause));
+    }
+    check_writable(&there.join("file"))
 }
 
 /// Writes `path` by `fill`ing a temporary file in the same folder, which then takes its name: a
@@ -43,6 +63,17 @@ pub fn write_atomically(
             permissions,
         } => replace(path, &target, permissions, fill),
     }
+}
+
+/// Writes bytes that are there already, as [`write_atomically`] does.
+///
+/// # Errors
+/// Those of [`write_atomically`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(path, |out| {
+        out.write_all(bytes)
+            .map_err(|cause| Error::io(path, "write", &cause))
+    })
 }
 
 /// Where the bytes for a path go.

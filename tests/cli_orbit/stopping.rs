@@ -145,7 +145,7 @@ fn an_orbit_under_an_error_bound_is_gone_on_with_by_the_flags_that_were_chosen()
 fn a_second_signal_ends_it_at_once_with_the_same_status() {
     // One frame takes the reference longer than this test is patient.
     let place = place();
-    let orbit = format!("orbit v.nrrd --mode mean --size 4000 --frames 3 {REFERENCE}");
+    let orbit = format!("orbit v.nrrd --mode mean --size 2000 --frames 3 {REFERENCE}");
     for (output, code) in [("f/%d.png", 75), ("f/%d.jpg", 1), ("f/a.apng", 1)] {
         let _ = fs::remove_dir_all(place.path("f"));
         let animation = output.ends_with(".apng");

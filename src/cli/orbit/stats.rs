@@ -6,14 +6,14 @@ use crate::frame::{self, Frame};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
 use crate::scene::Picture;
-use crate::tolerance::Cost;
+use crate::tolerance::{Cost, ToleranceStats};
 
 use super::super::engine::Rendered;
 use super::super::stats::{
     self, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times, VERSION,
     VolumeStats,
 };
-use super::super::tolerance::ToleranceStats;
+
 use super::making::{Made, Making};
 use super::plan::Plan;
 

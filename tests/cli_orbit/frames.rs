@@ -1,7 +1,5 @@
 //! Every frame is what `render` makes, in shards and under an error bound too.
 
-use std::fs;
-
 use angioray::frame::read_metadata;
 
 use super::cli_place::stderr;

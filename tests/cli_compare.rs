@@ -50,6 +50,13 @@ fn every_setting_is_judged_timed_and_pictured() {
                 assert!(0.0 < least && least <= median, "{name}: {spread}");
                 assert!(spread["mad"].as_f64().unwrap() >= 0.0, "{name}");
             }
+            let processor = &row["times_ms"]["processor"];
+            let on_linux = cfg!(target_os = "linux");
+            assert_eq!(
+                processor.as_f64().is_some_and(|ms| ms > 0.0),
+                on_linux,
+                "{name}"
+            );
             assert!(!row["passes"].as_array().unwrap().is_empty(), "{name}");
             assert_eq!(row["counts"]["rays"], 1600, "{name}");
             assert!(

@@ -8,6 +8,7 @@ mod judged;
 mod memory;
 mod pareto;
 mod peer;
+mod processor;
 mod settings;
 mod truth;
 mod wrongness;

@@ -1,7 +1,7 @@
 //! Writing a file whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Seek};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
@@ -43,6 +43,17 @@ pub fn write_atomically(
             permissions,
         } => replace(path, &target, permissions, fill),
     }
+}
+
+/// Writes bytes that are there already, as [`write_atomically`] does.
+///
+/// # Errors
+/// Those of [`write_atomically`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(path, |out| {
+        out.write_all(bytes)
+            .map_err(|cause| Error::io(path, "write", &cause))
+    })
 }
 
 /// Where the bytes for a path go.

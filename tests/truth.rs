@@ -4,6 +4,7 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use angioray::frame::{Frame, Wanted};
 use angioray::measure::Truth;
@@ -77,6 +78,60 @@ fn another_volume_scene_or_choice_of_planes_is_computed_anew() {
 }
 
 #[test]
+fn what_nobody_asked_for_in_a_month_is_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let volume = volume(8.0);
+    let (seen, mut other) = (scene(&volume, 16), scene(&volume, 16));
+    other.camera = common::camera(&volume, common::OBLIQUE + glam::DVec3::X);
+    let age = |days: u64| SystemTime::now() - Duration::from_secs(days * 24 * 3600);
+    let set_back = |days| {
+        for file in kept(folder.path()) {
+            let file = fs::File::options().append(true).open(file).unwrap();
+            file.set_modified(age(days)).unwrap();
+        }
+    };
+    asked(folder.path(), &volume, &seen, Wanted::ALL);
+    asked(folder.path(), &volume, &other, Wanted::ALL);
+    // What is no picture is nobody's to remove.
+    fs::write(folder.path().join("notes.txt"), "").unwrap();
+    set_back(29);
+    // Asked for again: young again.
+    assert!(!asked(folder.path(), &volume, &seen, Wanted::ALL).1);
+    let young = |file: &PathBuf| {
+        let modified = file.metadata().unwrap().modified().unwrap();
+        modified > age(1)
+    };
+    assert_eq!(
+        kept(folder.path())
+            .iter()
+            .filter(|file| young(file))
+            .count(),
+        1
+    );
+    set_back(31);
+    assert!(asked(folder.path(), &volume, &seen, Wanted::ALL).1);
+    assert_eq!(kept(folder.path()).len(), 2);
+    assert!(folder.path().join("notes.txt").exists());
+}
+
+#[test]
+fn a_picture_that_cannot_be_kept_is_given_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let volume = volume(8.0);
+    let scene = scene(&volume, 16);
+    let inner = folder.path().join("cache");
+    let truth = Truth::kept_in(&inner, &volume).unwrap();
+    fs::remove_dir(&inner).unwrap();
+    let found = truth.frame(&scene, Wanted::ALL, &Silent).unwrap();
+    let why = found.not_kept.unwrap().to_string();
+    assert!(found.computed && why.contains("cache"), "{why}");
+    fs::create_dir(&inner).unwrap();
+    let again = truth.frame(&scene, Wanted::ALL, &Silent).unwrap();
+    assert!(again.computed && again.not_kept.is_none());
+    assert_eq!(again.frame, found.frame);
+}
+
+#[test]
 fn what_is_torn_is_computed_again() {
     let folder = tempfile::tempdir().unwrap();
     let volume = volume(8.0);
@@ -94,10 +149,9 @@ fn what_is_torn_is_computed_again() {
         assert_eq!(frame, expected);
         assert_eq!(fs::read(file).unwrap(), whole);
     }
-    // What follows the picture is not read.
+    // What follows the whole picture, its checksum included, is not looked at.
     fs::write(file, longer).unwrap();
-    assert_eq!(
-        asked(folder.path(), &volume, &scene, Wanted::ALL).0,
-        expected
-    );
+    let (frame, computed) = asked(folder.path(), &volume, &scene, Wanted::ALL);
+    assert!(!computed);
+    assert_eq!(frame, expected);
 }

@@ -3,14 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::scene::{
-    ErrorBound, FilePath, SceneFile, SceneOptions, ToleranceOptions, TransferChoice,
-};
+use crate::scene::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::volume::files_of;
 
 use super::engine::DeviceOptions;
 use super::load::Source;
-use super::outputs::{OutputOptions, absolute};
+use super::outputs::OutputOptions;
 use super::scene::SceneArgument;
 
 #[derive(clap::Args)]
@@ -33,8 +31,7 @@ pub struct JobArguments {
 
 /// Flags over the scene file, checked as far as can be without reading the volume.
 pub struct Job {
-    /// The scene that is stored renders the same volume from wherever it is read, in the same way:
-    /// its volume's path is absolute and its octree's leaf is given.
+    /// As [`Source::stored`].
     pub options: SceneOptions,
     /// Decides how rays are followed, where there is one.
     pub bound: Option<ErrorBound>,
@@ -59,7 +56,7 @@ impl JobArguments {
         let tolerance = tolerance.over_file(file.group()?, &self.options, &mut of_file);
         let options = self.options.over(of_file);
         let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
-        let mut options = options.checked()?;
+        let options = options.checked()?;
         tolerance.check(&options)?;
         let output = OutputOptions::of_file(file)?;
         let output = self.output.clone().over(self.output.keep_of(output));
@@ -70,10 +67,8 @@ impl JobArguments {
         let scene_file = self.scene.path().map(Path::to_owned);
         let mut inputs: Vec<PathBuf> = scene_file.into_iter().chain(transfer_file).collect();
         inputs.extend(files_of(&source.path));
-        options.volume.volume = Some(FilePath(absolute(&source.path)));
-        options.volume.octree_leaf = Some(source.leaf.edge());
         Ok(Job {
-            options,
+            options: source.stored(options),
             bound: tolerance.max_error,
             output,
             device,

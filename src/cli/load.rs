@@ -6,11 +6,14 @@ use std::time::Instant;
 use crate::error::{Error, Result};
 use crate::octree::Leaf;
 use crate::progress::Progress;
-use crate::scene::{NonFiniteRule, SigmaMm, SpacingMm, Subject, VolumeOptions};
+use crate::scene::{
+    FilePath, NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions,
+};
 use crate::volume::{
     self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, suggested_iso,
 };
 
+use super::outputs::absolute;
 use super::terminal::note;
 
 /// Bins of the histogram from which iso values are suggested.
@@ -71,6 +74,15 @@ impl Source {
             },
             sigma_mm: options.smooth.map_or(0.0, SigmaMm::get),
         })
+    }
+
+    /// Options of a scene as pictures store them, so that they render the same volume from wherever
+    /// they are read, in the same way: its path is absolute and the octree's leaf is given.
+    #[must_use]
+    pub fn stored(&self, mut options: SceneOptions) -> SceneOptions {
+        options.volume.volume = Some(FilePath(absolute(&self.path)));
+        options.volume.octree_leaf = Some(self.leaf.edge());
+        options
     }
 
     /// Reads and smooths the volume, and tells the user what was noteworthy.

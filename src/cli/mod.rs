@@ -2,7 +2,6 @@
 
 mod bench;
 mod compare;
-mod compared;
 mod devices;
 mod engine;
 mod hardcase;

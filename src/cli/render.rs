@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::frame::{self, Wanted};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
-use crate::tolerance::Cost;
+use crate::tolerance::{Cost, ToleranceStats};
 
 use super::engine::Engine;
 use super::job::JobArguments;
@@ -14,7 +14,7 @@ use super::load::ms_since;
 use super::progress::Bars;
 use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
 use super::terminal::{message, note};
-use super::tolerance::{ToleranceStats, choose};
+use super::tolerance::choose;
 
 /// Render a volume to a picture
 #[derive(clap::Args)]

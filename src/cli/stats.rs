@@ -10,9 +10,8 @@ use crate::gpu::DeviceInfo;
 use crate::measure::{Counts, host_peak_bytes};
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
+use crate::tolerance::ToleranceStats;
 use crate::volume::Volume;
-
-use super::tolerance::ToleranceStats;
 
 /// Of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -2,14 +2,18 @@
 
 use crate::report::{Cell, Shown, Table};
 
+use crate::scene::Mode;
+
 use super::row::Row;
 
 /// Key, title, form, and the figure of a row.
 type Column = (&'static str, &'static str, Shown, fn(&Row) -> Cell);
 
-/// Every figure, unit in the key.
+/// Every figure, unit in the key; those for programs alone have titles that no table shows.
 const ALL: &[Column] = &[
-    ("mode", "mode", Shown::Short, |row| row.mode.into()),
+    ("mode", "mode", Shown::Short, |row| {
+        row.mode.to_string().into()
+    }),
     ("setting", "setting", Shown::Short, |row| {
         row.setting.as_str().into()
     }),
@@ -101,6 +105,12 @@ const ALL: &[Column] = &[
     ("normal_p99_deg", "normal p99, °", Shown::Short, |row| {
         row.error.and_then(|e| e.normal?.p99_deg).into()
     }),
+    (
+        "value_mean_share",
+        "value mean, %",
+        Shown::Percent(4),
+        |row| row.error.and_then(|e| e.value?.mean).into(),
+    ),
     ("value_missed", "not covered", Shown::Fixed(0), |row| {
         row.error.and_then(|e| Some(e.value?.missed)).into()
     }),
@@ -194,6 +204,10 @@ const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixe
 const NODES_PER_RAY: Column = ("nodes_per_ray", "nodes a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.nodes_per_ray()).into()
 });
+/// Only where there is one.
+const REMARK: Column = ("remark", "remark", Shown::Short, |row| {
+    row.remark().map(str::to_owned).into()
+});
 /// For people, the renderer only where it is another's.
 const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into());
 
@@ -208,7 +222,7 @@ pub fn whole_table(rows: &[Row]) -> Table {
 
 /// The figures of one mode's rows that matter in it.
 pub fn short_table(rows: &[Row]) -> Table {
-    let surface = rows.iter().any(|row| row.mode == "iso");
+    let surface = rows.iter().any(|row| row.mode == Mode::Iso);
     let projection = rows
         .iter()
         .any(|row| row.error.is_some_and(|error| error.value.is_some()));
@@ -226,7 +240,7 @@ pub fn short_table(rows: &[Row]) -> Table {
         SAMPLES_PER_RAY,
         NODES_PER_RAY,
     ]);
-    let columns: Vec<Column> = columns.collect();
+    let columns: Vec<Column> = columns.chain(remark(rows)).collect();
     table(rows, columns.iter())
 }
 
@@ -235,7 +249,14 @@ pub fn printed_table(rows: &[Row]) -> Table {
     let columns = [
         ALL[0], NAME, FRAME_MS, MISSED, EXTRA, DEPTH_P99, VALUE_RMSE, RMSE, MAX, SSIM, FLIP,
     ];
+    let columns: Vec<Column> = columns.into_iter().chain(remark(rows)).collect();
     table(rows, columns.iter())
+}
+
+fn remark(rows: &[Row]) -> Option<Column> {
+    rows.iter()
+        .any(|row| row.remark().is_some())
+        .then_some(REMARK)
 }
 
 fn table<'a>(rows: &[Row], columns: impl Iterator<Item = &'a Column> + Clone) -> Table {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::scene::toml_error::located;
 use crate::scene::{Mode, Setting};
 
 /// What a file of settings says.
@@ -19,6 +20,8 @@ pub struct Configs {
     settings: Vec<Config>,
 }
 
+const HINT: &str = "write [[setting]], a name, and keys such as step = 0.5";
+
 #[derive(Debug, Clone, PartialEq)]
 struct Config {
     setting: Setting,
@@ -26,22 +29,26 @@ struct Config {
 }
 
 impl Configs {
+    /// Reads a file of settings.
+    ///
     /// # Errors
     /// The file cannot be read; usage: it is no TOML, has other tables than `[[setting]]`, or a
     /// setting has no name or another's, or says what no setting can.
     pub fn read(path: &Path) -> Result<Self> {
         let text =
             std::fs::read_to_string(path).map_err(|cause| Error::io(path, "read", &cause))?;
-        Self::parse(&text).map_err(|error| error.at(path.display()))
+        Self::parse(&text, &path.display().to_string())
     }
 
-    fn parse(text: &str) -> Result<Self> {
-        let wrong = |sentence: String| {
-            Error::usage(sentence).hint("write [[setting]], a name, and keys such as step = 0.5")
-        };
+    fn parse(text: &str, place: &str) -> Result<Self> {
         let table: toml::Table = text
             .parse()
-            .map_err(|error: toml::de::Error| wrong(error.message().to_owned()))?;
+            .map_err(|error: toml::de::Error| located(&error, text, place).hint(HINT))?;
+        Self::of(&table).map_err(|error| error.at(place))
+    }
+
+    fn of(table: &toml::Table) -> Result<Self> {
+        let wrong = |sentence: String| Error::usage(sentence).hint(HINT);
         if let Some(key) = table.keys().find(|key| *key != "setting") {
             return Err(wrong(format!("'{key}' is no part of a file of settings")));
         }
@@ -63,6 +70,18 @@ impl Configs {
         Ok(Self { settings })
     }
 
+    /// The modes that the settings name; nothing where one of them is for every mode.
+    pub fn modes(&self) -> Option<Vec<Mode>> {
+        let named: Option<Vec<&Vec<Mode>>> = self
+            .settings
+            .iter()
+            .map(|config| config.modes.as_ref())
+            .collect();
+        let named = named?;
+        let is_named = |mode: &Mode| named.iter().any(|modes| modes.contains(mode));
+        Some(Mode::ALL.into_iter().filter(is_named).collect())
+    }
+
     /// Those for a mode, in the file's order.
     pub fn of_mode(&self, mode: Mode) -> Vec<Setting> {
         let suits = |config: &&Config| {
@@ -78,6 +97,11 @@ impl Config {
     /// `number` counts from 1.
     fn of(mut entry: toml::Table, number: usize) -> Result<Self> {
         let name = match entry.remove("name") {
+            Some(toml::Value::String(name)) if name.contains(char::is_control) => {
+                return Err(Error::usage(format!(
+                    "setting {number}: its name has a line break or another control character"
+                )));
+            }
             Some(toml::Value::String(name)) if !name.trim().is_empty() => name,
             _ => {
                 return Err(Error::usage(format!("setting {number} has no name"))
@@ -86,10 +110,14 @@ impl Config {
         };
         let modes = match entry.remove("modes") {
             None => None,
+            Some(toml::Value::Array(modes)) if modes.is_empty() => {
+                return Err(Error::usage(format!("setting '{name}': modes is empty"))
+                    .hint("leave it out for every mode"));
+            }
             Some(toml::Value::Array(modes)) => {
-                let mode = |mode: &toml::Value| {
-                    let text = mode.as_str().unwrap_or_default();
-                    text.parse::<Mode>()
+                let mode = |mode: &toml::Value| match mode {
+                    toml::Value::String(text) => text.parse::<Mode>(),
+                    other => Err(Error::usage(format!("{other} is not a mode's name"))),
                 };
                 let modes: Result<Vec<Mode>> = modes.iter().map(mode).collect();
                 Some(modes.map_err(|error| error.at(format!("setting '{name}'")))?)
@@ -115,7 +143,8 @@ mod tests {
     fn settings_are_for_the_modes_that_they_name() {
         let text = "[[setting]]\nname = 'a'\nstep = 2\nprobe = 'off'\n\
             [[setting]]\nname = 'b'\nmodes = ['mip']\nsampling = 'exact'\n";
-        let configs = Configs::parse(text).unwrap();
+        let configs = Configs::parse(text, "file").unwrap();
+        assert_eq!(configs.modes(), None);
         let names = |mode| -> Vec<String> {
             let settings = configs.of_mode(mode);
             settings.iter().map(|one| one.name().to_owned()).collect()
@@ -129,9 +158,25 @@ mod tests {
     }
 
     #[test]
+    fn where_every_setting_names_modes_these_are_compared() {
+        let text = "[[setting]]\nname = 'a'\nstep = 2\nmodes = ['dvr']\n\
+            [[setting]]\nname = 'b'\nmodes = ['mip', 'dvr']\nstep = 1\n";
+        let configs = Configs::parse(text, "file").unwrap();
+        assert_eq!(configs.modes(), Some(vec![Mode::Mip, Mode::Dvr]));
+    }
+
+    #[test]
     fn what_is_wrong_is_named() {
         for (text, sentence) in [
-            ("x = [", "array"),
+            ("x = [", "file:1: "),
+            ("[[setting]]\nname = 'a'\nx = [", "file:3: "),
+            ("[[setting]]\nname = \"a\\u001b\"", "control character"),
+            ("[[setting]]\nname = 'a'\nmodes = []", "modes is empty"),
+            (
+                "[[setting]]\nname = 'a'\nmodes = [3]",
+                "3 is not a mode's name",
+            ),
+            ("[[setting]]\nname = 'a'\nstep = -2", "a step of -2"),
             ("", "there is no [[setting]]"),
             ("[camera]\nfov = 3", "'camera' is no part"),
             ("setting = 3", "there is no [[setting]]"),
@@ -152,7 +197,7 @@ mod tests {
                 "two settings are called 'a'",
             ),
         ] {
-            let refused = Configs::parse(text).unwrap_err().to_string();
+            let refused = Configs::parse(text, "file").unwrap_err().to_string();
             assert!(refused.contains(sentence), "{text}: {refused}");
         }
     }

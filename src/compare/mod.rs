@@ -5,10 +5,12 @@ mod columns;
 mod configs;
 mod contender;
 mod folder;
+mod front;
 mod mode;
 mod page;
 mod pictures;
 mod row;
+mod timing;
 
 pub use columns::printed_table;
 pub use configs::Configs;
@@ -16,51 +18,60 @@ pub use folder::Folder;
 pub use mode::ModeSettings;
 pub use row::{PassMs, Row, RowFiles, RowMemory, RowTimes, Spread};
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use crate::error::{Error, Result};
-use crate::frame::error::figures;
+use crate::frame::error::{ErrorMap, figures};
 use crate::frame::{Frame, Wanted};
 use crate::measure::{
-    FrameTime, Peer, PeerScene, Readiness, Tradeoff, Truth, Wrongness, family, front, judge,
-    judged_planes, rounds, scale_of, time,
+    Peer, PeerScene, Readiness, TrueFrame, Truth, family, judge, judged_planes, scale_of,
 };
 use crate::progress::Progress;
 use crate::render::Renderer;
 use crate::report::{self, Section};
-use crate::scene::{Mode, Scene, Setting, Subject};
-use crate::tolerance::{Choice, Task, choose};
+use crate::scene::{Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::tolerance::{Choice, SEED, Task, ToleranceStats, choose};
 use crate::volume::Volume;
 
-use contender::Contender;
+use contender::{Contender, contenders};
+use pictures::Metadata;
 
 /// How rows call this renderer.
 const OURS: &str = "angioray";
 
-/// Of the tiles upon which a bound chooses.
-const SEED: u64 = 1;
-
 /// What is compared.
 pub struct Comparison<'a> {
     pub volume: &'a Volume,
+    /// What a mode's defaults need to know of the volume.
     pub subject: Subject,
+    /// Where the reference's pictures come from.
     pub truth: Truth<'a>,
     pub modes: Vec<ModeSettings>,
     /// How often each contender is timed.
     pub repeats: usize,
+    /// Made, and cleared of an earlier comparison, once nothing can be refused any more.
     pub folder: Folder,
-    /// What results say beside their rows, for programs.
+    /// What results say beside what comes out, for programs.
     pub about: Value,
+    /// Of the program, for the pictures' metadata.
+    pub version: &'static str,
     pub progress: &'a dyn Progress,
 }
 
-/// The rows of a comparison, and the files that it left.
+/// What comes out of a comparison.
+#[derive(Default)]
 pub struct Compared {
     pub rows: Vec<Row>,
     /// A section a mode.
     pub sections: Vec<Section>,
     /// What came out, a sentence each.
     pub findings: Vec<String>,
+    /// What is seen in each mode.
+    pub scenes: BTreeMap<String, SceneOptions>,
+    /// What an error bound chose in each mode that has its metric.
+    pub choices: BTreeMap<String, ToleranceStats>,
 }
 
 impl Comparison<'_> {
@@ -68,55 +79,93 @@ impl Comparison<'_> {
     /// failure loses nothing; a contender that fails has a row that says why.
     ///
     /// # Errors
-    /// The reference or the disk fails.
+    /// Usage: a mode without contenders, or with two of one name. The reference or the disk fails.
     pub fn run(&self, renderer: &mut Renderer, peers: &mut [Peer]) -> Result<Compared> {
-        let mut compared = Compared {
-            rows: Vec::new(),
-            sections: Vec::new(),
-            findings: Vec::new(),
-        };
         for of_mode in &self.modes {
-            let before = compared.rows.len();
-            let (truth, reference) = self.truth(of_mode)?;
-            let mut pictures = vec![reference];
-            let mut of_mode = of_mode.clone();
-            if let Some(choice) = self.choose(&mut of_mode, renderer)? {
-                compared
-                    .findings
-                    .push(format!("{}: {choice}", of_mode.mode));
-            }
-            let of_mode = &of_mode;
-            let mut contenders = contenders(of_mode, peers);
-            for (number, contender) in contenders.iter_mut().enumerate() {
-                let (mut row, frame) = self.contend(of_mode, contender, &truth, renderer, peers);
-                match frame {
-                    Ok(frame) => {
-                        let picture = self.keep(&mut row, number + 1, &truth, &frame)?;
-                        pictures.push(picture);
-                    }
-                    Err(error) => row.failure = Some(error.to_string()),
-                }
-                compared.rows.push(row);
-                self.folder.write_results(&self.about, &compared.rows)?;
-            }
-            let rows = &mut compared.rows[before..];
-            self.time(of_mode, &contenders, rows, renderer, peers)?;
-            for peer in peers.iter_mut() {
-                // One that died has told so in its rows.
-                let _ = peer.forget();
-            }
-            mark_front(of_mode.mode, rows);
-            let pictured = rows.iter().filter(|row| row.files.is_some());
-            for (row, picture) in pictured.zip(&mut pictures[1..]) {
-                picture.caption = page::caption(of_mode.mode, row);
-            }
-            let about = self.about_mode(of_mode, &truth);
-            let section = page::section(of_mode.mode, about, rows, pictures);
-            compared.sections.push(section);
-            compared.findings.extend(page::finding(of_mode.mode, rows));
-            self.folder.write_results(&self.about, &compared.rows)?;
+            contender::check(of_mode, peers)?;
+        }
+        self.folder.make()?;
+        self.folder.clear()?;
+        let mut compared = Compared::default();
+        for of_mode in &self.modes {
+            self.run_mode(of_mode.clone(), &mut compared, renderer, peers)?;
         }
         Ok(compared)
+    }
+
+    fn run_mode(
+        &self,
+        mut of_mode: ModeSettings,
+        compared: &mut Compared,
+        renderer: &mut Renderer,
+        peers: &mut [Peer],
+    ) -> Result<()> {
+        let mode = of_mode.mode;
+        let before = compared.rows.len();
+        let seen = of_mode.resolved.options.clone();
+        compared.scenes.insert(mode.to_string(), seen);
+        let wanted = judged_planes(&of_mode.resolved.scene.picture);
+        let truth = (self.truth).frame(&of_mode.resolved.scene, wanted, self.progress)?;
+        let mut pictures = vec![self.keep_reference(&of_mode, &truth.frame)?];
+        let mut maps = Vec::new();
+        match self.choose(&mut of_mode, renderer) {
+            Ok(None) => {}
+            Ok(Some(choice)) => {
+                compared.findings.push(format!("{mode}: {choice}"));
+                let stored = ToleranceStats::of(&choice);
+                compared.choices.insert(mode.to_string(), stored);
+            }
+            Err(error) => {
+                let names = of_mode.names();
+                let name = names.last().map_or("max-error", String::as_str);
+                let mut row = Row::new(mode, name, OURS);
+                row.fail(&error);
+                compared.rows.push(row);
+            }
+        }
+        let first = compared.rows.len();
+        let mut contenders = contenders(&of_mode, peers);
+        for (number, contender) in contenders.iter_mut().enumerate() {
+            let (mut row, frame) = self.contend(&of_mode, contender, &truth.frame, renderer, peers);
+            let drawn = match frame {
+                Ok(frame) => {
+                    let seen = of_mode.seen_by(contender);
+                    Some(self.keep(&mut row, number + 1, seen, &truth.frame, &frame)?)
+                }
+                Err(error) => {
+                    row.fail(&error);
+                    None
+                }
+            };
+            if let Some((picture, map)) = drawn {
+                pictures.push(picture);
+                maps.push(map);
+            }
+            compared.rows.push(row);
+            self.folder.write_results(&self.about, compared)?;
+        }
+        let rows = &mut compared.rows[first..];
+        self.time(&of_mode, &contenders, rows, renderer, peers)?;
+        for peer in peers.iter_mut() {
+            // One that died has told so in its rows.
+            let _ = peer.forget();
+        }
+        let rows = &mut compared.rows[before..];
+        front::mark_front(mode, rows);
+        let maps = pictures::to_one_scale(maps)?;
+        let pictured = rows
+            .iter()
+            .filter_map(|row| Some((row, row.files.as_ref()?)));
+        for (((row, files), picture), map) in pictured.zip(&mut pictures[1..]).zip(&maps) {
+            picture.caption = page::caption(mode, row);
+            picture.error_map = Some(pictures::recolored(&self.folder, files, map)?);
+        }
+        let about = self.about_mode(&of_mode, &truth);
+        let section = page::section(mode, about, rows, pictures);
+        let finding = page::finding(mode, rows);
+        compared.sections.push(section);
+        compared.findings.extend(finding);
+        self.folder.write_results(&self.about, compared)
     }
 
     /// Adds the setting that a bound chooses, where there is a bound.
@@ -142,27 +191,23 @@ impl Comparison<'_> {
         };
         let choice = choose(&task, renderer, self.progress)?;
         let how = choice.setting.options().clone();
-        of_mode.add(
-            Setting::new(format!("max-error {bound}"), how)?,
-            &self.subject,
-        )?;
+        let setting = Setting::new(ModeSettings::name_of_bound(bound), how)?;
+        of_mode.add(setting, &self.subject)?;
         Ok(Some(choice))
     }
 
-    /// The reference's picture, as it is and as the report shows it.
-    fn truth(&self, of_mode: &ModeSettings) -> Result<(Frame, report::Picture)> {
-        let scene = &of_mode.resolved.scene;
-        let wanted = judged_planes(&scene.picture);
-        let frame = self.truth.frame(scene, wanted, self.progress)?.frame;
-        let name = Folder::picture_name(scene.picture.mode(), 0, "reference");
-        let (png, _, _) = pictures::write(&self.folder, &name, &frame)?;
-        let picture = report::Picture {
-            label: "reference".into(),
+    /// Writes the reference's picture; gives it as the report shows it.
+    fn keep_reference(&self, of_mode: &ModeSettings, frame: &Frame) -> Result<report::Picture> {
+        let name = Folder::picture_name(of_mode.mode, 0, contender::REFERENCE);
+        let scene = of_mode.resolved.options.to_toml()?;
+        let metadata: &Metadata = &[("scene", &scene), ("version", self.version)];
+        let written = pictures::write(&self.folder, &name, frame, metadata)?;
+        Ok(report::Picture {
+            label: contender::REFERENCE.into(),
             caption: "in double precision, by definition".into(),
-            png: pictures::bytes(&self.folder.file(&png))?,
+            png: pictures::bytes(&self.folder.file(&written.png))?,
             error_map: None,
-        };
-        Ok((frame, picture))
+        })
     }
 
     /// A contender's row, judged but not timed yet, and its picture.
@@ -178,8 +223,8 @@ impl Comparison<'_> {
         let seen = &of_mode.resolved.scene;
         match contender {
             Contender::Setting(at) => {
-                let (setting, scene) = &of_mode.settings[*at];
-                let mut row = Row::new(seen.picture.mode(), setting.name(), OURS);
+                let (setting, Resolved { scene, .. }) = &of_mode.settings[*at];
+                let mut row = Row::new(of_mode.mode, setting.name(), OURS);
                 row.flags = setting.flags();
                 row.family = family(scene);
                 let judged = judge(renderer, scene, truth, scale);
@@ -192,8 +237,7 @@ impl Comparison<'_> {
                 scene,
             } => {
                 let peer = &mut peers[*peer];
-                let name = format!("{} {}", peer.name(), peer.version());
-                let mut row = Row::new(seen.picture.mode(), setting, &name);
+                let mut row = Row::new(of_mode.mode, setting, &contender::renderer_name(peer));
                 let frame = self.ready(peer, seen, setting).and_then(|ready| {
                     row.times_ms.prepare = Some(ready.ready_ms);
                     row.note.clone_from(&ready.note);
@@ -206,38 +250,57 @@ impl Comparison<'_> {
         }
     }
 
-    /// Writes a contender's picture and error map; gives them as the report shows them.
+    /// Writes a contender's picture and error map; gives them, the picture as the report shows it but
+    /// for its map, whose colours hang on the other contenders'.
     fn keep(
         &self,
         row: &mut Row,
         number: usize,
+        seen: &Resolved,
         truth: &Frame,
         frame: &Frame,
-    ) -> Result<report::Picture> {
+    ) -> Result<(report::Picture, ErrorMap)> {
         let name = Folder::picture_name(row.mode, number, &row.title());
         let scale = scale_of(self.volume);
-        let (files, encode_ms, map) =
-            pictures::write_judged(&self.folder, &name, truth, frame, scale)?;
+        let figures = match row.error {
+            Some(figures) => figures,
+            None => figures(truth, frame, scale)?,
+        };
+        let scene = seen.options.to_toml()?;
+        let metadata: &Metadata = &[("scene", &scene), ("version", self.version)];
+        let written = pictures::write(&self.folder, &name, frame, metadata)?;
+        let map = pictures::error_map(truth, frame, &figures, scale)?;
+        let (error_png, error_exr) = pictures::write_map(&self.folder, &name, &map)?;
         let picture = report::Picture {
             label: row.title(),
             caption: String::new(),
-            png: pictures::bytes(&self.folder.file(&files.png))?,
-            error_map: Some(pictures::shown(&map)?),
+            png: pictures::bytes(&self.folder.file(&written.png))?,
+            error_map: None,
         };
-        row.files = Some(files);
-        row.times_ms.encode = Some(encode_ms);
-        Ok(picture)
+        row.times_ms.encode = Some(written.encode_ms);
+        row.files = Some(RowFiles {
+            png: written.png,
+            exr: written.exr,
+            error_png,
+            error_exr,
+        });
+        Ok((picture, map))
     }
 
-    fn about_mode(&self, of_mode: &ModeSettings, truth: &Frame) -> String {
-        let pixels = truth.size.pixels();
+    fn about_mode(&self, of_mode: &ModeSettings, truth: &TrueFrame) -> String {
+        let pixels = truth.frame.size.pixels();
         let frames = match self.repeats {
             1 => "one frame".to_owned(),
             repeats => format!("{repeats} frames"),
         };
+        let computed = match (truth.computed, &truth.not_kept) {
+            (false, _) => "kept from an earlier comparison".to_owned(),
+            (true, None) => "computed for this one".to_owned(),
+            (true, Some(why)) => format!("computed for this one and could not be kept ({why})"),
+        };
         format!(
             "{pixels} rays; every setting drew {frames} in turn with the others after one to warm \
-             up, and its error is over all pixels against the reference. {}",
+             up, and its error is over all pixels against the reference, which was {computed}. {}",
             of_mode.resolved.notes.join("; ")
         )
     }
@@ -246,85 +309,6 @@ impl Comparison<'_> {
         match peer.prepare(self.volume, scene, setting)? {
             Readiness::Ready(ready) => Ok(ready),
             Readiness::Unsupported { why } => Err(Error::failed(why)),
-        }
-    }
-
-    /// All that have a picture, in turn.
-    fn time(
-        &self,
-        of_mode: &ModeSettings,
-        contenders: &[Contender],
-        rows: &mut [Row],
-        renderer: &mut Renderer,
-        peers: &mut [Peer],
-    ) -> Result<()> {
-        let sound: Vec<usize> = (0..rows.len())
-            .filter(|&at| rows[at].failure.is_none())
-            .collect();
-        let frames = sound.len() * (self.repeats + 1);
-        self.progress.begin("timing", frames as u64);
-        // One that fails now keeps its picture and says so.
-        let times = rounds(&sound, self.repeats, |&at| {
-            self.progress.advance(1);
-            Ok(match &contenders[at] {
-                Contender::Setting(at) => time(renderer, &of_mode.settings[*at].1),
-                Contender::Peer { peer, scene, .. } => match scene {
-                    Some(scene) => peer_time(&mut peers[*peer], scene),
-                    None => Err(Error::failed("it has no scene ready")),
-                },
-            })
-        });
-        self.progress.end();
-        for (&at, times) in sound.iter().zip(times?) {
-            match times.into_iter().collect::<Result<Vec<FrameTime>>>() {
-                Ok(times) => rows[at].timed(&times),
-                Err(error) => rows[at].failure = Some(error.to_string()),
-            }
-        }
-        Ok(())
-    }
-}
-
-fn peer_time(peer: &mut Peer, scene: &PeerScene) -> Result<FrameTime> {
-    let time = peer.time(scene)?;
-    Ok(FrameTime {
-        frame_ms: time.ms,
-        render_ms: time.ms,
-        passes: Vec::new(),
-    })
-}
-
-/// The settings, then what the peers have for the mode.
-fn contenders(of_mode: &ModeSettings, peers: &[Peer]) -> Vec<Contender> {
-    let mode = of_mode.resolved.scene.picture.mode();
-    let settings = (0..of_mode.settings.len()).map(Contender::Setting);
-    let others = peers.iter().enumerate().flat_map(|(peer, one)| {
-        let settings = one.settings(mode).into_iter();
-        settings.map(move |setting| Contender::Peer {
-            peer,
-            setting,
-            scene: None,
-        })
-    });
-    settings.chain(others).collect()
-}
-
-/// By each way of telling how wrong the mode's pictures are.
-fn mark_front(mode: Mode, rows: &mut [Row]) {
-    for wrongness in Wrongness::of_mode(mode) {
-        let point = |row: &Row| {
-            let error = wrongness.of(row.error.as_ref()?)?;
-            let time = row.frame_ms()?;
-            Some(Tradeoff { time, error })
-        };
-        let placed: Vec<(usize, Tradeoff)> = (0..rows.len())
-            .filter_map(|at| Some((at, point(&rows[at])?)))
-            .collect();
-        let points: Vec<Tradeoff> = placed.iter().map(|(_, point)| *point).collect();
-        for ((at, _), on_front) in placed.iter().zip(front(&points)) {
-            if on_front {
-                rows[*at].on_front.push(wrongness.key);
-            }
         }
     }
 }

@@ -1,8 +1,9 @@
 //! A mode of a comparison: what is seen, and the settings in which it is drawn.
 
+use super::contender::Contender;
 use crate::error::Result;
 use crate::measure::built_in;
-use crate::scene::{ErrorBound, Mode, Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::{ErrorBound, Mode, Resolved, SceneOptions, Setting, Subject};
 
 /// A mode, what is seen in it, and the settings in which it is rendered.
 #[derive(Debug, Clone)]
@@ -10,12 +11,28 @@ pub struct ModeSettings {
     pub mode: Mode,
     /// The scene of which the reference makes the truth.
     pub resolved: Resolved,
-    pub(super) settings: Vec<(Setting, Scene)>,
+    pub(super) settings: Vec<(Setting, Resolved)>,
     /// The cheapest setting that keeps it takes part.
     pub(super) bound: Option<ErrorBound>,
 }
 
 impl ModeSettings {
+    /// The name of the setting that the options say beside those that are compared.
+    const AS_GIVEN: &str = "as given";
+
+    /// The names of the settings that take part, in their order.
+    pub(super) fn names(&self) -> Vec<String> {
+        let names = self.settings.iter().map(|(setting, _)| setting.name());
+        let mut names: Vec<String> = names.map(str::to_owned).collect();
+        names.extend(self.bound.map(Self::name_of_bound));
+        names
+    }
+
+    /// The name of the setting that a bound chooses.
+    pub(super) fn name_of_bound(bound: ErrorBound) -> String {
+        format!("max-error {bound}")
+    }
+
     /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
     /// and how by each of `settings`, which are the built-in ones where there are none.
     ///
@@ -46,7 +63,7 @@ impl ModeSettings {
     }
 
     /// What of `options` means something in a mode.
-    fn of_mode(mode: Mode, options: &SceneOptions) -> SceneOptions {
+    pub fn of_mode(mode: Mode, options: &SceneOptions) -> SceneOptions {
         let mut of_mode = SceneOptions::default();
         of_mode.picture.mode = Some(mode);
         of_mode.over(options.clone())
@@ -62,7 +79,7 @@ impl ModeSettings {
         if how == SceneOptions::default() {
             return Ok(());
         }
-        self.add(Setting::new("as given", how)?, subject)
+        self.add(Setting::new(Self::AS_GIVEN, how)?, subject)
     }
 
     /// The setting that is chosen by a bound takes part too.
@@ -75,6 +92,14 @@ impl ModeSettings {
         Ok(())
     }
 
+    /// The scene as a contender renders it: a peer follows rays in ways of its own.
+    pub(super) fn seen_by(&self, contender: &Contender) -> &Resolved {
+        match contender {
+            Contender::Setting(at) => &self.settings[*at].1,
+            Contender::Peer { .. } => &self.resolved,
+        }
+    }
+
     /// One setting more.
     ///
     /// # Errors
@@ -82,10 +107,9 @@ impl ModeSettings {
     pub fn add(&mut self, setting: Setting, subject: &Subject) -> Result<()> {
         let options = setting.over(&self.resolved.options).checked();
         let resolved = options.and_then(|options| options.resolve(subject));
-        let scene = resolved
-            .map_err(|error| error.at(format!("{}: setting '{}'", self.mode, setting.name())))?
-            .scene;
-        self.settings.push((setting, scene));
+        let resolved = resolved
+            .map_err(|error| error.at(format!("{}: setting '{}'", self.mode, setting.name())))?;
+        self.settings.push((setting, resolved));
         Ok(())
     }
 }

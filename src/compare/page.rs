@@ -125,10 +125,11 @@ pub fn caption(mode: Mode, row: &Row) -> String {
             }
         }
     }
+    parts.extend(row.remark().map(str::to_owned));
     parts.join(" · ")
 }
 
-/// The settings that nothing beats in both time and what matters most, fastest first.
+/// The settings that nothing less wrong is as fast as, by what matters most, fastest first.
 pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let wrongness = Wrongness::of_mode(mode).first()?;
     let mut front: Vec<(f64, f64, String)> = rows
@@ -146,7 +147,8 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: nothing beats, in both time and {} ({}): {settings}",
+            "{mode}: worth their time, nothing less wrong being as fast, with ms and {} in {}: \
+             {settings}",
             wrongness.title, wrongness.unit
         )
     })

@@ -2,15 +2,17 @@
 
 use serde::Serialize;
 
+use crate::error::Error;
 use crate::frame::Frame;
 use crate::frame::error::Figures;
 use crate::measure::{Counts, FrameTime, Judged, Times, host_peak_bytes};
+use crate::scene::Mode;
 
 /// A row of the results; what is not known yet, or cannot be, is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    pub mode: &'static str,
-    /// The contender's name, one of its own in the mode.
+    pub mode: Mode,
+    /// The contender's name, with the renderer one of its own in the mode.
     pub setting: String,
     /// `angioray`, or a peer's name and version.
     pub renderer: String,
@@ -24,7 +26,7 @@ pub struct Row {
     pub note: Option<String>,
     pub error: Option<Figures>,
     pub times_ms: RowTimes,
-    /// Of the median frame, in launch order.
+    /// Of the frame that is nearest to the median, in launch order.
     pub passes: Vec<PassMs>,
     pub counts: Option<Counts>,
     pub memory: Option<RowMemory>,
@@ -42,9 +44,9 @@ pub struct RowTimes {
     pub frame: Option<Spread>,
     /// From the first launch to the last one's end, on the device's clock.
     pub render: Option<Spread>,
-    /// Uploading the volume, with the first picture of all.
+    /// Uploading the volume: with the first picture of all, then 0.
     pub upload: Option<f64>,
-    /// Compiling kernels.
+    /// Compiling the kernels that no row before this one needed.
     pub build: Option<f64>,
     /// Telling from the octree what can be left out.
     pub classify: Option<f64>,
@@ -86,7 +88,8 @@ pub struct RowMemory {
     /// The most that the process held, the rows before this one included; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
-    /// From host to device for this picture; with the first one of all, the volume too.
+    /// From host to device for this picture; with the first one of all (which may be one that an error
+    /// bound was chosen by), the volume too.
     pub uploaded_bytes: u64,
 }
 
@@ -101,7 +104,7 @@ pub struct RowFiles {
 
 impl Row {
     /// A row of which nothing is known but who it is of.
-    pub fn new(mode: &'static str, setting: &str, renderer: &str) -> Self {
+    pub fn new(mode: Mode, setting: &str, renderer: &str) -> Self {
         Self {
             mode,
             setting: setting.to_owned(),
@@ -118,6 +121,12 @@ impl Row {
             on_front: Vec::new(),
             files: None,
         }
+    }
+
+    /// Says why there is no picture, or no time.
+    pub fn fail(&mut self, error: &Error) {
+        let hint = error.hint_text().map(|hint| format!(" ({hint})"));
+        self.failure = Some(format!("{error}{}", hint.unwrap_or_default()));
     }
 
     /// Takes over what a rendering cost and how wrong it is; gives its frame.
@@ -137,7 +146,8 @@ impl Row {
         rendering.frame
     }
 
-    /// Takes over what the repeats took; of the passes, those of the median frame.
+    /// Takes over what the repeats took; of the passes, those of the frame nearest to the
+    /// median.
     pub fn timed(&mut self, frames: &[FrameTime]) {
         let frame: Times = frames.iter().map(|time| time.frame_ms).collect();
         let render: Times = frames.iter().map(|time| time.render_ms).collect();
@@ -146,8 +156,9 @@ impl Row {
         // A peer has no device's clock.
         let clocked = frames.iter().any(|time| !time.passes.is_empty());
         self.times_ms.render = clocked.then(|| Spread::from(&render));
-        let is_median = |time: &&FrameTime| time.frame_ms == frame.median_ms();
-        if let Some(median) = frames.iter().find(is_median) {
+        let off = |time: &FrameTime| (time.frame_ms - frame.median_ms()).abs();
+        let nearest = frames.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        if let Some(median) = nearest {
             let passes = median.passes.iter();
             self.passes = passes
                 .map(|pass| PassMs {
@@ -162,8 +173,18 @@ impl Row {
     pub fn title(&self) -> String {
         match self.renderer.as_str() {
             super::OURS => self.setting.clone(),
-            other => format!("{other}: {}", self.setting),
+            other => Self::title_of_peer(other, &self.setting),
         }
+    }
+
+    /// The title of a peer's row.
+    pub fn title_of_peer(renderer: &str, setting: &str) -> String {
+        format!("{renderer}: {setting}")
+    }
+
+    /// What there is to say beside the figures: why some are missing, or what a peer shows instead.
+    pub fn remark(&self) -> Option<&str> {
+        self.failure.as_deref().or(self.note.as_deref())
     }
 
     /// The median frame, ms.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::frame::percentile;
+use crate::frame::{median, percentile};
 
 /// What the repeats of one setting took.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,13 +24,13 @@ impl Times {
     }
 
     pub fn median_ms(&self) -> f64 {
-        middle(self.rounds.clone())
+        median_of(self.rounds.iter().copied())
     }
 
     /// How far the rounds lie from their median: the median of the absolute deviations.
     pub fn mad_ms(&self) -> f64 {
         let median = self.median_ms();
-        middle(self.rounds.iter().map(|ms| (ms - median).abs()).collect())
+        median_of(self.rounds.iter().map(|ms| (ms - median).abs()))
     }
 
     /// These rounds and then `later` ones.
@@ -44,11 +44,11 @@ impl Times {
         self.rounds.len()
     }
 
-    /// How many times as long as `other`: the middle one of the rounds' own ratios, which what
+    /// How many times as long as `other`: the median of the rounds' own ratios, which what
     /// disturbs a whole round leaves as they are.
     pub fn over(&self, other: &Self) -> f64 {
         let rounds = self.rounds.iter().zip(&other.rounds);
-        middle(rounds.map(|(own, other)| own / other).collect())
+        median_of(rounds.map(|(own, other)| own / other))
     }
 }
 
@@ -60,10 +60,9 @@ impl FromIterator<f64> for Times {
     }
 }
 
-/// The median, of an even number the upper of the two in the middle.
-fn middle(mut entries: Vec<f64>) -> f64 {
-    entries.sort_by(f64::total_cmp);
-    entries.get(entries.len() / 2).copied().unwrap_or(f64::NAN)
+/// NaN of nothing.
+fn median_of(entries: impl Iterator<Item = f64>) -> f64 {
+    median(&mut entries.collect::<Vec<_>>()).unwrap_or(f64::NAN)
 }
 
 /// Runs each of `settings` once to warm up, then all of them in turn, `repeats` times (at least

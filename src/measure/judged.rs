@@ -72,7 +72,8 @@ pub struct FrameTime {
     pub passes: Vec<PassTime>,
 }
 
-/// Renders `scene` for display alone.
+/// Renders `scene` for display alone; gradients that it needs precomputed are so beforehand, since
+/// another setting may have taken their place.
 ///
 /// # Errors
 /// As [`Renderer::render`].
@@ -81,6 +82,7 @@ pub fn time(renderer: &mut Renderer, scene: &Scene) -> Result<FrameTime> {
         display: true,
         ..Wanted::default()
     };
+    renderer.precompute(scene, wanted)?;
     let began = Instant::now();
     let rendering = renderer.render(scene, wanted)?;
     Ok(FrameTime {

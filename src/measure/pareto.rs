@@ -14,9 +14,9 @@ pub const TIME_NOISE: f64 = 0.1;
 /// The Pareto front of `points`: for each, whether it is on it.
 ///
 /// A point is on the front when no other is at most as wrong and as fast. Times are measured, so a
-/// point must be faster by more than [`TIME_NOISE`] than all that are less wrong; of points equally
-/// wrong and, within the noise, equally fast, the first stands for all. Without this every run
-/// would have another front, full of settings that only luck put there.
+/// point must be faster by more than [`TIME_NOISE`] than all of the front that are less wrong; of points
+/// equally wrong and, within the noise, equally fast, the first stands for all. Without this every
+/// run would have another front, full of settings that only luck put there.
 pub fn front(points: &[Tradeoff]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // Stable: equal errors stay in the order given.

@@ -8,6 +8,7 @@
 use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
@@ -34,11 +35,17 @@ struct Cache {
     hasher: blake3::Hasher,
 }
 
-/// A reference picture, and whether it had to be computed.
+/// A reference picture.
 pub struct TrueFrame {
     pub frame: Frame,
+    /// Whether it had to be computed.
     pub computed: bool,
+    /// Why it could not be kept for the next time.
+    pub not_kept: Option<Error>,
 }
+
+/// Pictures that were not asked for in so long are removed.
+const KEPT: Duration = Duration::from_secs(30 * 24 * 3600);
 
 impl<'a> Truth<'a> {
     /// Pictures are computed whenever they are asked for.
@@ -49,13 +56,15 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Pictures are kept in `folder`, which is made where there is none.
+    /// Pictures are kept in `folder`, which is made where there is none; those that nobody asked for in
+    /// thirty days, such as those of programs that are no more, are removed from it.
     ///
     /// # Errors
     /// The folder cannot be made; the program cannot read its own file.
     pub fn kept_in(folder: &Path, volume: &'a Volume) -> Result<Self> {
         std::fs::create_dir_all(folder)
             .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
+        forget_old(folder);
         let mut hasher = blake3::Hasher::new();
         hash_program(&mut hasher)?;
         hash_volume(&mut hasher, volume);
@@ -71,8 +80,7 @@ impl<'a> Truth<'a> {
     /// The reference's picture of `scene`.
     ///
     /// # Errors
-    /// As [`reference::render`]; the folder's disk. A kept picture that cannot be read is computed
-    /// again.
+    /// As [`reference::render`]. A kept picture that cannot be read is computed again.
     pub fn frame(
         &self,
         scene: &Scene,
@@ -86,15 +94,15 @@ impl<'a> Truth<'a> {
             return Ok(TrueFrame {
                 frame,
                 computed: false,
+                not_kept: None,
             });
         }
         let frame = reference::render(self.volume, scene, wanted, progress)?;
-        if let Some(path) = &kept {
-            write(path, &frame)?;
-        }
+        let not_kept = kept.and_then(|path| write(&path, &frame).err());
         Ok(TrueFrame {
             frame,
             computed: true,
+            not_kept,
         })
     }
 }
@@ -108,7 +116,22 @@ impl Cache {
         for byte in &hasher.finalize().as_bytes()[..16] {
             let _ = write!(name, "{byte:02x}");
         }
-        self.folder.join(name + ".frame")
+        self.folder.join(format!("{name}.{EXTENSION}"))
+    }
+}
+
+/// Of kept pictures.
+const EXTENSION: &str = "frame";
+
+/// Removes the pictures that were not asked for in [`KEPT`], as far as they can be.
+fn forget_old(folder: &Path) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()) {
+        let asked = || path.metadata().ok()?.modified().ok()?.elapsed().ok();
+        let is_ours = path.extension().is_some_and(|name| name == EXTENSION);
+        if is_ours && asked().is_some_and(|age| age > KEPT) {
+            let _ = std::fs::remove_file(path);
+        }
     }
 }
 
@@ -152,5 +175,10 @@ fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
         file.read_exact(plane).ok()?;
     }
     let at_end = file.read(&mut [0]).ok()? == 0;
+    if at_end {
+        // So that it is seen to be asked for. Where that cannot be said it is computed again one day.
+        let file = std::fs::File::options().append(true).open(path);
+        let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+    }
     at_end.then_some(frame)
 }

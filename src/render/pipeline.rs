@@ -130,6 +130,22 @@ impl<'a> Renderer<'a> {
         self.volume
     }
 
+    /// Computes and uploads the gradients that the picture needs precomputed, unless those of the last
+    /// one are the same.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn precompute(&mut self, scene: &Scene, wanted: Wanted) -> Result<()> {
+        if let Some(how) = gradient::needed(scene, wanted)
+            && self.directions.as_ref().is_none_or(|d| d.how != how)
+        {
+            self.directions = None; // its memory first
+            let made = DeviceDirections::upload(self.device, self.volume, how)?;
+            self.directions = Some(made);
+        }
+        Ok(())
+    }
+
     /// Casts a scene; computes only the planes that are wanted.
     ///
     /// # Errors
@@ -137,17 +153,10 @@ impl<'a> Renderer<'a> {
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
         check_step(scene, self.volume)?;
         let uploaded_before = self.device.uploaded_bytes();
-        let needed = gradient::needed(scene, wanted);
-        if let Some(how) = needed
-            && self.directions.as_ref().is_none_or(|d| d.how != how)
-        {
-            self.directions = None; // its memory first
-            let made = DeviceDirections::upload(self.device, self.volume, how)?;
-            self.directions = Some(made);
-        }
+        self.precompute(scene, wanted)?;
         let directions = self.directions.as_ref();
         let directions_bytes = directions.map_or(0, |directions| directions.figures.bytes);
-        let directions = directions.filter(|_| needed.is_some());
+        let directions = directions.filter(|_| gradient::needed(scene, wanted).is_some());
         let held_bytes = self.uploaded.bytes() + directions_bytes;
         check_room(self.device, scene.size, wanted, held_bytes)?;
         let build_ms_before = self.built.build_ms();

@@ -14,7 +14,7 @@ mod path;
 mod picture;
 mod quadrature;
 mod sampling;
-mod toml_error;
+pub(crate) mod toml_error;
 mod transfer;
 mod transfer_file;
 mod view;

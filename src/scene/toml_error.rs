@@ -3,7 +3,7 @@
 use crate::error::Error;
 
 /// The usage error `place:line: message`; the line is the first one that `error` names.
-pub(super) fn located(error: &toml::de::Error, text: &str, place: &str) -> Error {
+pub(crate) fn located(error: &toml::de::Error, text: &str, place: &str) -> Error {
     let message = error.message().replace('\n', " ");
     match error.span() {
         Some(span) => Error::usage(message).at(format!("{place}:{}", line(text, span.start))),

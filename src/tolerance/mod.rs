@@ -21,6 +21,7 @@ mod contender;
 mod deviation;
 mod evidence;
 mod search;
+mod stats;
 mod student;
 mod tiles;
 mod told;
@@ -28,6 +29,7 @@ mod told;
 use std::time::Instant;
 
 pub use candidates::candidates;
+pub use stats::ToleranceStats;
 pub use student::CONFIDENCE;
 
 use crate::error::Result;
@@ -38,6 +40,9 @@ use crate::scene::{Camera, ErrorBound, Resolved, SceneOptions, Setting, Subject}
 use crate::volume::Volume;
 
 use search::Search;
+
+/// Of the random tiles where nothing is to be repeated with others: the same in every run.
+pub const SEED: u64 = 1;
 
 /// What a setting is chosen for.
 #[derive(Clone, Copy)]

@@ -131,7 +131,7 @@ impl Peer {
         &self.device
     }
 
-    /// The names of its settings for a mode ([`Picture::mode`](crate::scene::Picture::mode)).
+    /// The names of its settings for a mode, by the mode's name.
     pub fn settings(&self, mode: &str) -> Vec<String> {
         let able = |setting: &&OfferedSetting| setting.modes.iter().any(|m| m == mode);
         let settings = self.settings.iter().filter(able);

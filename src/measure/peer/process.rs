@@ -259,7 +259,7 @@ impl Complaints {
 }
 
 /// The beginning of what a peer said, fit for a line of ours.
-fn quotable(text: &str) -> String {
+pub(super) fn quotable(text: &str) -> String {
     let plain = |c: char| if c.is_control() { ' ' } else { c };
     let mut quoted: String = text.chars().take(QUOTED_CHARS).map(plain).collect();
     if text.chars().count() > QUOTED_CHARS {

@@ -1,11 +1,13 @@
 //! What is said between this program and a peer; scripts/peers/README.md tells it to those who
 //! write one.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 use crate::scene::{Filter, Gradient, Lens, Light, Phong, Picture, Projection, Reflection, Scene};
 use crate::volume::Volume;
+
+use super::process::quotable;
 
 /// What a peer is asked for; a line of JSON with one key.
 #[derive(Serialize)]
@@ -239,14 +241,29 @@ impl RenderRequest {
 /// The first line of a peer.
 #[derive(Deserialize)]
 pub(super) struct Hello {
+    #[serde(deserialize_with = "line")]
     pub peer: String,
+    #[serde(deserialize_with = "line")]
     pub version: String,
+    #[serde(deserialize_with = "line")]
     pub device: String,
     pub settings: Vec<OfferedSetting>,
 }
 
+/// Text that goes into lines of ours.
+fn line<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<String, D::Error> {
+    String::deserialize(from).map(|text| quotable(&text))
+}
+
+fn optional_line<'de, D: Deserializer<'de>>(
+    from: D,
+) -> std::result::Result<Option<String>, D::Error> {
+    Option::<String>::deserialize(from).map(|text| text.map(|text| quotable(&text)))
+}
+
 #[derive(Deserialize)]
 pub(super) struct OfferedSetting {
+    #[serde(deserialize_with = "line")]
     pub name: String,
     pub modes: Vec<String>,
 }
@@ -268,8 +285,10 @@ pub(super) struct Ready {
     #[serde(default)]
     pub ready: f64,
     /// Why it is not supported.
+    #[serde(default, deserialize_with = "optional_line")]
     pub why: Option<String>,
     /// In what its picture differs from the scene's.
+    #[serde(default, deserialize_with = "optional_line")]
     pub note: Option<String>,
 }
 

@@ -7,9 +7,9 @@ use crate::gpu::Device;
 use crate::measure::Peer;
 use crate::report::Report;
 
-use super::load::{Loaded, Source};
-use super::repeat::command_line;
-use super::stats::{DeviceStats, VERSION, VolumeStats};
+use super::super::load::{Loaded, Source};
+use super::super::repeat::command_line;
+use super::super::stats::{DeviceStats, VERSION, VolumeStats};
 
 /// What the results say beside their rows.
 pub fn about(
@@ -91,7 +91,7 @@ pub fn report(
         summary: "Every picture here was drawn several ways and held against a reference that \
             solves the picture by its definition, in double precision. Points further down are \
             nearer to the truth, points further left are faster; the line joins the settings that \
-            nothing beats in both."
+            are worth their time: nothing less wrong is as fast."
             .into(),
         facts: facts
             .into_iter()

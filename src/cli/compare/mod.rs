@@ -1,28 +1,27 @@
 //! `angioray compare`.
 
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
+mod checks;
+mod options;
+mod page;
+mod truth;
+
 use std::time::Instant;
 
 use crate::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_table};
 use crate::error::{Error, Result};
-use crate::measure::{Peer, Truth};
+use crate::measure::Peer;
 use crate::octree::Octree;
 use crate::render::{Options, Renderer};
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
-use crate::scene::{
-    ErrorBound, FilePath, Mode, SceneFile, SceneOptions, ToleranceOptions, TransferChoice,
-};
-use crate::volume::files_of;
+use crate::scene::{ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
 
-use super::compared::{about, report};
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};
-use super::outputs;
 use super::progress::Bars;
 use super::scene::SceneArgument;
+use super::stats::VERSION;
 use super::terminal::{message, note, to_stdout};
+use options::{CompareOptions, Named};
+use page::{about, report};
 
 /// Render modes and settings side by side, judged against the reference and timed
 #[derive(clap::Args)]
@@ -32,6 +31,10 @@ use super::terminal::{message, note, to_stdout};
   angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
+
+What --sampling, --step, --filter and the like say is compared as one setting more, 'as given'; what
+--max-error chooses is another. All are held against the reference of the scene, in linear
+interpolation and with central differences.
 
 A file of settings, for --configs:
   [[setting]]
@@ -56,39 +59,6 @@ pub struct CompareArguments {
     device: DeviceOptions,
 }
 
-group! {
-    /// What is compared, and where it goes.
-    #[command(next_help_heading = "Comparison")]
-    pub struct CompareOptions {
-        /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
-        /// made where there is none
-        #[arg(short, long, value_name = "DIR")]
-        output: FilePath,
-
-        /// The modes, with commas between [default: the one of --mode, else iso,mip,lmip,dvr]
-        #[arg(long, value_name = "LIST")]
-        modes: Modes,
-
-        /// Compare the settings of this TOML file in place of the built-in ones
-        #[arg(long, value_name = "FILE.toml")]
-        configs: FilePath,
-
-        /// How often each setting is timed, after one frame to warm up, all in turn [default: 5]
-        #[arg(long, value_name = "N", allow_hyphen_values = true)]
-        repeats: u32,
-
-        /// Another renderer to compare with, as a command line that speaks the protocol of
-        /// scripts/peers; may be given several times
-        #[arg(long, value_name = "COMMAND")]
-        peer: Vec<String>,
-
-        /// Where the reference's pictures are kept, so that each is computed once: a folder, or off
-        /// [default: angioray in the user's cache folder]
-        #[arg(long, value_name = "DIR|off")]
-        cache: FilePath,
-    }
-}
-
 /// Those shown where none are named.
 const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
@@ -102,9 +72,8 @@ impl CompareArguments {
         let mut options = SceneOptions::of_file(&file)?;
         let of_file = Named::take(&mut compare, &mut options);
         let modes = named.modes().or_else(|| of_file.modes());
-        let modes = modes.unwrap_or_else(|| MODES.to_vec());
         let compare = self.compare.over(compare);
-        let options = self.options.over(options);
+        let options = self.options.clone().over(options);
         // Beside settings that are given: the one that it chooses is a contender like the others.
         let bound = self.tolerance.over(file.group()?).max_error;
         let device = self.device.keep_of(file.group()?);
@@ -122,7 +91,14 @@ impl CompareArguments {
         let configs = configs
             .map(|FilePath(path)| Configs::read(path))
             .transpose()?;
+        let of_configs = || configs.as_ref().and_then(Configs::modes);
+        let modes = modes.or_else(of_configs).unwrap_or(MODES.to_vec());
+        checks::meaning(&self.options, &modes)?;
+        if let Some(bound) = bound {
+            checks::bound(bound, &modes)?;
+        }
         let source = Source::of(&options.volume)?;
+        let options = source.stored(options);
         let Engine::Device { device, work_group } = Engine::open(&device)? else {
             return Err(Error::usage(
                 "the reference cannot be compared: it is what others are held against",
@@ -134,7 +110,7 @@ impl CompareArguments {
             .configs
             .as_ref()
             .map(|FilePath(path)| path.as_path());
-        check_inputs(&folder, &source, &options, self.scene.path(), configs_file)?;
+        checks::inputs(&folder, &source, &options, self.scene.path(), configs_file)?;
         let commands = compare.peer.as_deref().unwrap_or_default();
         let mut peers = commands
             .iter()
@@ -148,13 +124,12 @@ impl CompareArguments {
             .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))
             .collect::<Result<Vec<ModeSettings>>>()?;
         if let Some(bound) = bound {
-            add_bound(&mut modes, bound)?;
+            add_bound(&mut modes, bound);
         }
         for of_mode in &modes {
             let notes = of_mode.resolved.notes.iter();
             notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
         }
-        folder.make()?;
         for peer in &mut peers {
             peer.load(&loaded.volume)?;
         }
@@ -165,10 +140,7 @@ impl CompareArguments {
             work_group: work_group.map(Into::into),
         };
         let mut renderer = Renderer::new(&device, &loaded.volume, &octree, options)?;
-        let truth = match cache_folder(compare.cache) {
-            Some(folder) => Truth::kept_in(&folder, &loaded.volume)?,
-            None => Truth::uncached(&loaded.volume),
-        };
+        let truth = truth::truth(compare.cache, &loaded.volume)?;
         let comparison = Comparison {
             volume: &loaded.volume,
             subject: loaded.subject,
@@ -177,6 +149,7 @@ impl CompareArguments {
             repeats: repeats as usize,
             about: about(&device, &source, &loaded, octree_ms, repeats),
             folder,
+            version: VERSION,
             progress: &bars,
         };
         message(format_args!("compare on {}", device.info().name));
@@ -185,78 +158,6 @@ impl CompareArguments {
         report(&comparison, compared, &device, &source, &peers)
             .write(&comparison.folder.report())?;
         tell(&comparison.folder, &rows, &findings)
-    }
-}
-
-impl CompareOptions {
-    /// What a scene file says of the comparison; the files that it names are relative to it.
-    fn of_file(file: &SceneFile) -> Result<Self> {
-        let options = file.group::<Self>()?;
-        let named_here = |path: FilePath| file.named_here(path);
-        let is_off = |FilePath(path): &FilePath| path.as_os_str() == OFF;
-        Ok(Self {
-            output: options.output.map(named_here),
-            configs: options.configs.map(named_here),
-            cache: options.cache.map(|path| {
-                if is_off(&path) {
-                    path
-                } else {
-                    file.named_here(path)
-                }
-            }),
-            ..options
-        })
-    }
-}
-
-/// `--modes`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Modes(Vec<Mode>);
-
-impl FromStr for Modes {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        let modes = text.split(',').map(str::parse::<Mode>);
-        let modes: Vec<Mode> = modes.collect::<Result<_>>()?;
-        match modes
-            .iter()
-            .enumerate()
-            .find(|(at, mode)| modes[..*at].contains(mode))
-        {
-            Some((_, twice)) => Err(Error::usage(format!("'{twice}' is named twice"))),
-            None => Ok(Self(modes)),
-        }
-    }
-}
-
-readable!(Modes);
-
-/// The modes that are named: several, or one.
-struct Named(Option<Modes>, Option<Mode>);
-
-impl Named {
-    /// Takes them out of the options, whose modes are those of a single picture.
-    fn take(compare: &mut CompareOptions, options: &mut SceneOptions) -> Self {
-        Self(compare.modes.take(), options.picture.mode.take())
-    }
-
-    /// # Errors
-    /// Usage: both, and not the same.
-    fn check(&self) -> Result<()> {
-        match self {
-            Self(Some(Modes(modes)), Some(mode)) if modes != &[*mode] => Err(Error::usage(
-                "'--modes' and '--mode' exclude each other: both say what is compared",
-            )
-            .hint("leave out '--mode'")),
-            _ => Ok(()),
-        }
-    }
-
-    fn modes(self) -> Option<Vec<Mode>> {
-        let Self(several, one) = self;
-        let several = several.map(|Modes(modes)| modes);
-        several.or_else(|| Some(vec![one?]))
     }
 }
 
@@ -274,47 +175,14 @@ fn mode_settings(
     Ok(of_mode)
 }
 
-/// Lets a bound choose a setting in every mode that has its metric.
-fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) -> Result<()> {
-    let added: Vec<Result<()>> = modes.iter_mut().map(|mode| mode.add_bound(bound)).collect();
-    match added.iter().any(Result::is_ok) {
-        true => Ok(()),
-        false => added.into_iter().collect(),
-    }
-}
-
-/// That no file of the comparison replaces one that it reads.
-fn check_inputs(
-    folder: &Folder,
-    source: &Source,
-    options: &SceneOptions,
-    scene: Option<&Path>,
-    configs: Option<&Path>,
-) -> Result<()> {
-    let transfer = options.picture.tf.as_ref().and_then(TransferChoice::file);
-    let volume = files_of(&source.path);
-    let others = [scene, configs, transfer.as_deref()].into_iter().flatten();
-    let inputs: Vec<&Path> = volume.iter().map(PathBuf::as_path).chain(others).collect();
-    for file in [folder.json(), folder.csv(), folder.report()] {
-        outputs::check(&file, &inputs)?;
-    }
-    Ok(())
-}
-
-/// Turns the cache off.
-const OFF: &str = "off";
-
-/// Where reference pictures are kept: where the user says, else where programs of this system keep
-/// what can be made again (XDG Base Directory Specification).
-fn cache_folder(asked: Option<FilePath>) -> Option<PathBuf> {
-    match asked {
-        Some(FilePath(path)) if path.as_os_str() == OFF => None,
-        Some(FilePath(path)) => Some(path),
-        None => {
-            let named = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
-            let named = named.filter(|path| path.is_absolute());
-            let home = || Some(std::env::home_dir()?.join(".cache"));
-            Some(named.or_else(home)?.join("angioray"))
+/// Lets a bound choose a setting in every mode that has its metric, and tells of the others.
+fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
+    for of_mode in modes {
+        if of_mode.add_bound(bound).is_err() {
+            note(format_args!(
+                "{}: max-error {bound} has no meaning there, nothing is chosen",
+                of_mode.mode
+            ));
         }
     }
 }

@@ -1,0 +1,63 @@
+//! What is refused before the work.
+
+use std::path::{Path, PathBuf};
+
+use crate::compare::{Folder, ModeSettings};
+use crate::error::{Error, Result};
+use crate::scene::options::group::Keys;
+use crate::scene::{ErrorBound, Mode, SceneOptions, TransferChoice};
+use crate::volume::files_of;
+
+use super::super::load::Source;
+use super::super::outputs;
+
+/// That every flag means something in one of the modes.
+pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
+    let given = |options: &SceneOptions| {
+        let mut keys = options.picture.given();
+        keys.extend(options.sampling.given());
+        keys
+    };
+    let means = |key: &String| {
+        let of_mode = |mode: &Mode| given(&ModeSettings::of_mode(*mode, flags));
+        modes.iter().any(|mode| of_mode(mode).contains(key))
+    };
+    match given(flags).iter().find(|key| !means(key)) {
+        None => Ok(()),
+        Some(key) => {
+            let modes: Vec<String> = modes.iter().map(Mode::to_string).collect();
+            Err(Error::usage(format!(
+                "'{key}' means nothing in any mode that is compared: {}",
+                modes.join(", ")
+            ))
+            .hint("leave it out, or name another mode in '--modes'"))
+        }
+    }
+}
+
+/// That a bound can choose in one of the modes.
+pub fn bound(bound: ErrorBound, modes: &[Mode]) -> Result<()> {
+    let checked: Vec<Result<()>> = modes.iter().map(|mode| bound.check(*mode)).collect();
+    match checked.iter().any(Result::is_ok) {
+        true => Ok(()),
+        false => checked.into_iter().collect(),
+    }
+}
+
+/// That no file of the comparison replaces one that it reads.
+pub fn inputs(
+    folder: &Folder,
+    source: &Source,
+    options: &SceneOptions,
+    scene: Option<&Path>,
+    configs: Option<&Path>,
+) -> Result<()> {
+    let transfer = options.picture.tf.as_ref().and_then(TransferChoice::file);
+    let volume = files_of(&source.path);
+    let others = [scene, configs, transfer.as_deref()].into_iter().flatten();
+    let inputs: Vec<&Path> = volume.iter().map(PathBuf::as_path).chain(others).collect();
+    for file in [folder.json(), folder.csv(), folder.report()] {
+        outputs::check(&file, &inputs)?;
+    }
+    Ok(())
+}

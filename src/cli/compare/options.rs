@@ -1,0 +1,116 @@
+//! What `compare` is told beside the scene.
+
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+use crate::scene::options::group::group;
+use crate::scene::options::plain::readable;
+use crate::scene::{FilePath, Mode, SceneFile, SceneOptions};
+
+group! {
+    /// What is compared, and where it goes.
+    #[command(next_help_heading = "Comparison")]
+    pub struct CompareOptions {
+        /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
+        /// made where there is none
+        #[arg(short, long, value_name = "DIR")]
+        output: FilePath,
+
+        /// The modes, with commas between [default: the one of --mode, else iso,mip,lmip,dvr]
+        #[arg(long, value_name = "LIST")]
+        modes: Modes,
+
+        /// Compare the settings of this TOML file in place of the built-in ones
+        #[arg(long, value_name = "FILE.toml")]
+        configs: FilePath,
+
+        /// How often each setting is timed, after one frame to warm up, all in turn [default: 5]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        repeats: u32,
+
+        /// Another renderer to compare with, as a command line that speaks the protocol of
+        /// scripts/peers; may be given several times
+        #[arg(long, value_name = "COMMAND")]
+        peer: Vec<String>,
+
+        /// Where the reference's pictures are kept, so that each is computed once: a folder, or off
+        /// [default: angioray in the user's cache folder]
+        #[arg(long, value_name = "DIR|off")]
+        cache: FilePath,
+    }
+}
+
+/// Turns the cache off.
+pub const OFF: &str = "off";
+
+impl CompareOptions {
+    /// What a scene file says of the comparison; the files that it names are relative to it.
+    pub fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        let named_here = |path: FilePath| file.named_here(path);
+        let is_off = |FilePath(path): &FilePath| path.as_os_str() == OFF;
+        Ok(Self {
+            output: options.output.map(named_here),
+            configs: options.configs.map(named_here),
+            cache: options.cache.map(|path| {
+                if is_off(&path) {
+                    path
+                } else {
+                    file.named_here(path)
+                }
+            }),
+            ..options
+        })
+    }
+}
+
+/// `--modes`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Modes(Vec<Mode>);
+
+impl FromStr for Modes {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let modes = text.split(',').map(str::parse::<Mode>);
+        let modes: Vec<Mode> = modes.collect::<Result<_>>()?;
+        match modes
+            .iter()
+            .enumerate()
+            .find(|(at, mode)| modes[..*at].contains(mode))
+        {
+            Some((_, twice)) => Err(Error::usage(format!("'{twice}' is named twice"))),
+            None => Ok(Self(modes)),
+        }
+    }
+}
+
+readable!(Modes);
+
+/// The modes that are named: several, or one.
+pub struct Named(Option<Modes>, Option<Mode>);
+
+impl Named {
+    /// Takes them out of the options, whose modes are those of a single picture.
+    pub fn take(compare: &mut CompareOptions, options: &mut SceneOptions) -> Self {
+        Self(compare.modes.take(), options.picture.mode.take())
+    }
+
+    /// # Errors
+    /// Usage: both, and not the same.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Self(Some(Modes(modes)), Some(mode)) if modes != &[*mode] => Err(Error::usage(
+                "'--modes' and '--mode' exclude each other: both say what is compared",
+            )
+            .hint("leave out '--mode'")),
+            _ => Ok(()),
+        }
+    }
+
+    pub fn modes(self) -> Option<Vec<Mode>> {
+        let Self(several, one) = self;
+        let several = several.map(|Modes(modes)| modes);
+        several.or_else(|| Some(vec![one?]))
+    }
+}

@@ -22,6 +22,26 @@ pub fn check_writable(path: &Path) -> Result<()> {
     }
 }
 
+/// That files can be written into a folder, or that it can be made where it is not there yet, as far as
+/// can be told without making it.
+///
+/// # Errors
+/// What is there is no folder, or takes no files.
+pub fn check_folder(path: &Path) -> Result<()> {
+    let mut there = path;
+    while !there.exists() {
+        there = match there.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+    }
+    if !there.is_dir() {
+        let cause = io::Error::from(io::ErrorKind::NotADirectory);
+        return Err(Error::io(path, "make the folder", &cause));
+    }
+    check_writable(&there.join("file"))
+}
+
 /// Writes `path` by `fill`ing a temporary file in the same folder, which then takes its name: a
 /// reader sees the old file or the whole new one, and a failure leaves nothing behind.
 ///

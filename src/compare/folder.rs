@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::error::{Error, Result};
-use crate::output::{check_writable, write_bytes};
+use crate::output::{check_folder, check_writable, write_bytes};
 use crate::scene::Mode;
 
 use super::Compared;
@@ -23,11 +23,12 @@ impl Folder {
     /// One that may be there already. Makes nothing yet.
     ///
     /// # Errors
-    /// It is there and takes no files.
+    /// It is there and takes no files, or cannot be made.
     pub fn new(path: &Path) -> Result<Self> {
         let folder = Self {
             path: path.to_owned(),
         };
+        check_folder(&path.join(Self::PICTURES))?;
         if path.exists() {
             for file in [folder.json(), folder.csv(), folder.report()] {
                 check_writable(&file)?;

@@ -57,7 +57,7 @@ pub fn inputs(
     let others = [scene, configs, transfer.as_deref()].into_iter().flatten();
     let inputs: Vec<&Path> = volume.iter().map(PathBuf::as_path).chain(others).collect();
     for file in [folder.json(), folder.csv(), folder.report()] {
-        outputs::check(&file, &inputs)?;
+        outputs::check_spared(&file, &inputs)?;
     }
     Ok(())
 }

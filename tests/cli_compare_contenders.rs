@@ -1,0 +1,266 @@
+//! Who takes part in `angioray compare`: settings with names of their own, another renderer, what an
+//! error bound chooses. Without a device what needs one says so and passes, unless REQUIRE_OPENCL=1.
+#![cfg(unix)]
+
+mod cli_place;
+mod common;
+
+use std::fs;
+
+use angioray::frame::read_metadata;
+use cli_place::{Place, stderr};
+use serde_json::Value;
+
+fn device() -> Option<String> {
+    let device = common::device()?;
+    Some(format!("--device {}", device.info().id))
+}
+
+const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 1 --cache off";
+
+/// A peer that draws black, 40 pixels a side, and whose second setting it dies of.
+const PEER: &str = r#"echo '{"peer":"black","version":"9","device":"none","settings":[{"name":"night","modes":["mip","iso"]},{"name":"deadly","modes":["iso"]}]}'
+while read -r line; do
+case "$line" in
+*'"load"'*) echo '{"loaded":1}' ;;
+*'"deadly"'*) exit 3 ;;
+*'"scene"'*) echo '{"ready":2.5,"supported":true,"note":"no light at all"}' ;;
+*'"color"'*)
+  head -c 25600 /dev/zero >"$(printf '%s' "$line" | sed 's/.*"color":"\([^"]*\)".*/\1/')"
+  echo '{"ms":7}' ;;
+*'"render"'*) echo '{"ms":6}' ;;
+*) echo '{}' ;;
+esac
+done
+"#;
+
+fn with_peer(times: usize) -> Place {
+    let place = Place::with_ball();
+    place.write("peer.sh", PEER);
+    let peers = ["'sh peer.sh'"].repeat(times).join(", ");
+    place.write("peers.toml", &format!("peer = [{peers}]\n"));
+    place
+}
+
+fn rows(place: &Place) -> Vec<Value> {
+    let results = place.json("out/results.json");
+    results["rows"].as_array().unwrap().clone()
+}
+
+#[test]
+fn another_renderer_has_a_row_like_ours() {
+    let Some(device) = device() else { return };
+    let place = with_peer(1);
+    let printed = place.done(&format!("{SMALL} --modes mip --scene peers.toml {device}"));
+    assert!(printed.contains("black 9: night"), "{printed}");
+    assert!(printed.contains("no light at all"), "{printed}");
+    let rows = rows(&place);
+    let peer = rows
+        .iter()
+        .find(|row| row["renderer"] == "black 9")
+        .unwrap();
+    assert_eq!(peer["times_ms"]["frame"]["median"], 6.0);
+    assert_eq!(peer["times_ms"]["prepare"], 2.5);
+    // Black where the ball is white.
+    assert_eq!(peer["error"]["color"]["max"], 1.0);
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(page.contains("no light at all"));
+    // The control: ours draw the ball.
+    for ours in rows.iter().filter(|row| row["renderer"] == "angioray") {
+        assert!(ours["error"]["color"]["max"].as_f64().unwrap() < 1.0);
+        assert_eq!(ours["note"], Value::Null);
+    }
+}
+
+#[test]
+fn a_peer_that_dies_costs_its_own_rows() {
+    let Some(device) = device() else { return };
+    let place = with_peer(1);
+    let line = format!("{SMALL} --modes iso --iso 100 --scene peers.toml {device}");
+    let output = place.run(&line);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("2 of 10 settings failed"),
+        "{}",
+        stderr(&output)
+    );
+    let rows = rows(&place);
+    let (failed, sound): (Vec<&Value>, Vec<&Value>) =
+        rows.iter().partition(|row| !row["failure"].is_null());
+    let names: Vec<&Value> = failed.iter().map(|row| &row["setting"]).collect();
+    // One of which it died, and one that it can draw no more.
+    assert_eq!(names, ["night", "deadly"]);
+    assert_eq!(sound.len(), 8);
+    assert!(sound.iter().all(|row| row["times_ms"]["repeats"] == 1));
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let why = failed[1]["failure"].as_str().unwrap();
+    assert!(why.contains("black 9") && page.contains("ended"), "{why}");
+}
+
+#[test]
+fn what_a_bound_chooses_takes_part_and_is_stored() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.write("one.toml", "[[setting]]\nname = 'coarse'\nstep = 4\n");
+    let output = place.run(&format!(
+        "{SMALL} --modes mip,dvr --configs one.toml --max-error value:1% {device}"
+    ));
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("dvr: max-error value:0.01 has no meaning there"),
+        "{said}"
+    );
+    let results = place.json("out/results.json");
+    let chosen = &results["max_error"]["mip"];
+    assert_eq!(
+        (&chosen["metric"], &chosen["met"]),
+        (&"value".into(), &true.into())
+    );
+    assert!(results["max_error"]["dvr"].is_null());
+    let rows = rows(&place);
+    let names: Vec<&Value> = rows.iter().map(|row| &row["setting"]).collect();
+    assert_eq!(names, ["coarse", "max-error value:0.01", "coarse"]);
+    assert_eq!(rows[1]["flags"], chosen["chosen"]);
+    let greatest = |row: &Value| row["error"]["value"]["max"].as_f64().unwrap();
+    assert!(greatest(&rows[1]) <= 0.01);
+    // The control: without it the bound would not be kept.
+    assert!(greatest(&rows[0]) > 0.01, "{}", greatest(&rows[0]));
+}
+
+#[test]
+fn a_picture_says_how_to_make_it_again() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.write(
+        "one.toml",
+        "[[setting]]\nname = 'coarse'\nstep = 3\nprobe = 'off'\n",
+    );
+    place.done(&format!(
+        "{SMALL} --modes iso --iso 100 --azimuth 25 --configs one.toml {device}"
+    ));
+    let results = place.json("out/results.json");
+    let seen = &results["scenes"]["iso"];
+    assert_eq!(
+        (&seen["iso"], &seen["azimuth"]),
+        (&100.0.into(), &25.0.into())
+    );
+    let png = "out/pictures/iso-01-coarse.png";
+    let text = |file: &str| {
+        let metadata = read_metadata(&place.path(file)).unwrap();
+        assert!(metadata.iter().any(|(key, _)| key == "version"), "{file}");
+        let (_, scene) = metadata
+            .into_iter()
+            .find(|(key, _)| key == "scene")
+            .unwrap();
+        scene
+    };
+    place.write("again.toml", &text(png));
+    place.done(&format!("render -o again.png --scene again.toml {device}"));
+    let decoded = |file: &str| image::open(place.path(file)).unwrap().into_rgb8();
+    assert!(decoded("again.png") == decoded(png));
+    // The control: the reference's own scene says nothing of steps, and is another picture.
+    place.write("other.toml", &text("out/pictures/iso-00-reference.png"));
+    place.done(&format!("render -o other.png --scene other.toml {device}"));
+    assert!(decoded("other.png") != decoded(png));
+}
+
+#[test]
+fn names_that_would_be_taken_for_another_are_refused() {
+    let Some(device) = device() else { return };
+    let place = with_peer(2);
+    for (file, settings) in [
+        (
+            "reference.toml",
+            "[[setting]]\nname = 'reference'\nstep = 1\n",
+        ),
+        ("given.toml", "[[setting]]\nname = 'as given'\nstep = 1\n"),
+        (
+            "bound.toml",
+            "[[setting]]\nname = 'max-error rmse:0.1'\nstep = 1\n",
+        ),
+        (
+            "mip.toml",
+            "[[setting]]\nname = 'a'\nmodes = ['mip']\nstep = 1\n",
+        ),
+    ] {
+        place.write(file, settings);
+    }
+    for (line, wanted) in [
+        ("--configs reference.toml", "called 'reference'"),
+        ("--configs given.toml --step 2", "called 'as given'"),
+        (
+            "--configs bound.toml --max-error rmse:0.1",
+            "called 'max-error rmse:0.1'",
+        ),
+        ("--scene peers.toml", "called 'black 9: night'"),
+        ("--configs mip.toml", "no setting for mode 'iso'"),
+        ("--quad simpson", "'quad' means nothing in any mode"),
+        ("--max-error value:1%", "only a projection shows values"),
+    ] {
+        let line = format!("{SMALL} --modes iso --iso 100 {device} {line}");
+        let said = place.refused(&line, 2);
+        assert!(said.contains(wanted), "{line}: {said}");
+    }
+    // The control: alone each of these is fine, and a file's modes are those that are compared.
+    place.done(&format!("{SMALL} --configs mip.toml {device}"));
+    assert_eq!(rows(&place).len(), 1);
+}
+
+#[test]
+fn an_earlier_comparison_leaves_nothing_behind() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.write("one.toml", "[[setting]]\nname = 'a'\nstep = 1\n");
+    let line = format!("{SMALL} --configs one.toml {device}");
+    place.done(&format!("{line} --modes iso --iso 100"));
+    let of_iso = place.path("out/pictures/iso-01-a.png");
+    assert!(of_iso.exists());
+    place.done(&format!("{line} --modes mip"));
+    assert!(!of_iso.exists());
+    assert!(place.path("out/pictures/mip-01-a.png").exists());
+}
+
+#[test]
+fn a_flat_volume_is_compared_too() {
+    let Some(device) = device() else { return };
+    let place = Place::empty();
+    place.write(
+        "flat.nrrd",
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nencoding: ascii\n\n\
+         7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7 7\n",
+    );
+    let line = "compare flat.nrrd -o out --size 40x40 --repeats 1 --cache off --modes mip";
+    place.done(&format!("{line} {device}"));
+    let rows = rows(&place);
+    assert!(rows.len() >= 6);
+    for row in &rows {
+        assert_eq!(row["failure"], Value::Null, "{}", row["setting"]);
+        assert_eq!(row["error"]["value"], Value::Null);
+        assert!(row["error"]["color"]["rmse"].as_f64().unwrap() < 1e-6);
+    }
+}
+
+#[test]
+fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
+    let Some(device) = device() else { return };
+    let place = Place::with_ball();
+    place.write("taken", "");
+    place.write("one.toml", "[[setting]]\nname = 'a'\nstep = 1\n");
+    let line = format!(
+        "compare ball.nrrd -o out --size 40x40 --repeats 1 --modes mip --configs one.toml {device}"
+    );
+    let output = place
+        .command(&line)
+        .env("XDG_CACHE_HOME", place.path("taken"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("pictures are not kept"), "{said}");
+    assert_eq!(rows(&place).len(), 1);
+    fs::remove_dir_all(place.path("out")).unwrap();
+    // One that the user names has to work.
+    let said = place.refused(&format!("{line} --cache taken"), 1);
+    assert!(said.contains("--cache off"), "{said}");
+}

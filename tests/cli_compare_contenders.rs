@@ -8,7 +8,7 @@ mod common;
 use std::fs;
 
 use angioray::frame::read_metadata;
-use cli_place::{Place, stderr};
+use cli_place::{Place, pixels, stderr};
 use serde_json::Value;
 
 fn device() -> Option<String> {
@@ -142,8 +142,8 @@ fn a_picture_says_how_to_make_it_again() {
     let results = place.json("out/results.json");
     let seen = &results["scenes"]["iso"];
     assert_eq!(
-        (&seen["iso"], &seen["azimuth"]),
-        (&100.0.into(), &25.0.into())
+        (seen["iso"].as_f64(), seen["mode"].as_str()),
+        (Some(100.0), Some("iso"))
     );
     let png = "out/pictures/iso-01-coarse.png";
     let text = |file: &str| {
@@ -157,7 +157,7 @@ fn a_picture_says_how_to_make_it_again() {
     };
     place.write("again.toml", &text(png));
     place.done(&format!("render -o again.png --scene again.toml {device}"));
-    let decoded = |file: &str| image::open(place.path(file)).unwrap().into_rgb8();
+    let decoded = |file: &str| pixels(&place.path(file));
     assert!(decoded("again.png") == decoded(png));
     // The control: the reference's own scene says nothing of steps, and is another picture.
     place.write("other.toml", &text("out/pictures/iso-00-reference.png"));
@@ -195,13 +195,18 @@ fn names_that_would_be_taken_for_another_are_refused() {
         ),
         ("--scene peers.toml", "called 'black 9: night'"),
         ("--configs mip.toml", "no setting for mode 'iso'"),
-        ("--quad simpson", "'quad' means nothing in any mode"),
+        ("--quad simpson", "'quad' does not go with mode 'iso'"),
         ("--max-error value:1%", "only a projection shows values"),
     ] {
         let line = format!("{SMALL} --modes iso --iso 100 {device} {line}");
         let said = place.refused(&line, 2);
         assert!(said.contains(wanted), "{line}: {said}");
     }
+    let said = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
+    assert!(
+        said.contains("'refine' means nothing in any mode that is compared: mip"),
+        "{said}"
+    );
     // The control: alone each of these is fine, and a file's modes are those that are compared.
     place.done(&format!("{SMALL} --configs mip.toml {device}"));
     assert_eq!(rows(&place).len(), 1);
@@ -245,14 +250,15 @@ fn a_flat_volume_is_compared_too() {
 fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
     let Some(device) = device() else { return };
     let place = Place::with_ball();
-    place.write("taken", "");
+    fs::create_dir(place.path("home")).unwrap();
+    place.write("home/angioray", "");
     place.write("one.toml", "[[setting]]\nname = 'a'\nstep = 1\n");
     let line = format!(
         "compare ball.nrrd -o out --size 40x40 --repeats 1 --modes mip --configs one.toml {device}"
     );
     let output = place
         .command(&line)
-        .env("XDG_CACHE_HOME", place.path("taken"))
+        .env("XDG_CACHE_HOME", place.path("home"))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
@@ -261,6 +267,6 @@ fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
     assert_eq!(rows(&place).len(), 1);
     fs::remove_dir_all(place.path("out")).unwrap();
     // One that the user names has to work.
-    let said = place.refused(&format!("{line} --cache taken"), 1);
+    let said = place.refused(&format!("{line} --cache home/angioray"), 1);
     assert!(said.contains("--cache off"), "{said}");
 }

@@ -40,6 +40,7 @@ const ALL: &[Column] = &[
     ("frame_min_ms", "ms, least", Shown::Fixed(2), |row| {
         row.times_ms.frame.map(|spread| spread.min).into()
     }),
+    PROCESSOR_MS,
     ("render_median_ms", "passes, ms", Shown::Fixed(2), |row| {
         row.times_ms.render.map(|spread| spread.median).into()
     }),
@@ -162,6 +163,9 @@ const ALL: &[Column] = &[
 const FRAME_MS: Column = ("frame_median_ms", "ms", Shown::Fixed(2), |row| {
     row.frame_ms().into()
 });
+const PROCESSOR_MS: Column = ("processor_median_ms", "CPU ms", Shown::Fixed(2), |row| {
+    row.times_ms.processor.into()
+});
 const RMSE: Column = ("rmse", "colour rmse", Shown::Short, |row| {
     row.error.and_then(|e| Some(e.color?.rmse)).into()
 });
@@ -231,7 +235,7 @@ pub fn short_table(rows: &[Row]) -> Table {
         (_, true) => OF_PROJECTIONS,
         _ => &[],
     };
-    let columns = [NAME, FRAME_MS].into_iter();
+    let columns = [NAME, FRAME_MS, PROCESSOR_MS].into_iter();
     let columns = columns.chain(own.iter().copied()).chain([
         RMSE,
         MAX,

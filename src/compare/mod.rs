@@ -75,15 +75,21 @@ pub struct Compared {
 }
 
 impl Comparison<'_> {
-    /// Judges and times every contender. What is known is written as it is learnt, so that a later
+    /// That every mode has contenders, each with a name of its own.
+    ///
+    /// # Errors
+    /// Usage: it has none, or two of one name.
+    pub fn check(&self, peers: &[Peer]) -> Result<()> {
+        let mut modes = self.modes.iter();
+        modes.try_for_each(|of_mode| contender::check(of_mode, peers))
+    }
+
+    /// Judges and times every contender of a comparison that passes [`Self::check`]. What is known is written as it is learnt, so that a later
     /// failure loses nothing; a contender that fails has a row that says why.
     ///
     /// # Errors
-    /// Usage: a mode without contenders, or with two of one name. The reference or the disk fails.
+    /// The reference or the disk fails.
     pub fn run(&self, renderer: &mut Renderer, peers: &mut [Peer]) -> Result<Compared> {
-        for of_mode in &self.modes {
-            contender::check(of_mode, peers)?;
-        }
         self.folder.make()?;
         self.folder.clear()?;
         let mut compared = Compared::default();

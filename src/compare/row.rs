@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::frame::Frame;
 use crate::frame::error::Figures;
+use crate::frame::{Frame, median};
 use crate::measure::{Counts, FrameTime, Judged, Times, host_peak_bytes};
 use crate::scene::Mode;
 
@@ -42,6 +42,8 @@ pub struct RowTimes {
     pub repeats: usize,
     /// From the camera set to pixels that the host can read.
     pub frame: Option<Spread>,
+    /// What all threads of the program that drew it used meanwhile, the median; unknown on some systems.
+    pub processor: Option<f64>,
     /// From the first launch to the last one's end, on the device's clock.
     pub render: Option<Spread>,
     /// Uploading the volume: with the first picture of all, then 0.
@@ -153,6 +155,10 @@ impl Row {
         let render: Times = frames.iter().map(|time| time.render_ms).collect();
         self.times_ms.repeats = frames.len();
         self.times_ms.frame = (!frames.is_empty()).then(|| Spread::from(&frame));
+        let used = frames.iter().map(|time| time.processor_ms);
+        self.times_ms.processor = used
+            .collect::<Option<Vec<f64>>>()
+            .and_then(|mut used| median(&mut used));
         // A peer has no device's clock.
         let clocked = frames.iter().any(|time| !time.passes.is_empty());
         self.times_ms.render = clocked.then(|| Spread::from(&render));

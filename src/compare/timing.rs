@@ -50,6 +50,7 @@ fn peer_time(peer: &mut Peer, scene: &PeerScene) -> Result<FrameTime> {
     let time = peer.time(scene)?;
     Ok(FrameTime {
         frame_ms: time.ms,
+        processor_ms: time.cpu_ms,
         render_ms: time.ms,
         passes: Vec::new(),
     })

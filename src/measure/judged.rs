@@ -11,6 +11,7 @@ use crate::scene::{Picture, Scene};
 use crate::volume::Volume;
 
 use super::Counts;
+use super::processor::processor_ms;
 
 /// The planes in which a picture of this kind can be wrong, and the counters. A surface's values
 /// are all the iso value, and a maximum's depth hangs on rounding where the field is flat: neither
@@ -66,6 +67,9 @@ pub fn judge(
 pub struct FrameTime {
     /// From the camera set to pixels that the host can read, on the host's clock.
     pub frame_ms: f64,
+    /// What all threads of the program that drew it used meanwhile; of a device that is the processor
+    /// itself, drawing included. Unknown on some systems.
+    pub processor_ms: Option<f64>,
     /// From the first launch to the last one's end, on the device's clock.
     pub render_ms: f64,
     /// On the device's clock.
@@ -83,10 +87,11 @@ pub fn time(renderer: &mut Renderer, scene: &Scene) -> Result<FrameTime> {
         ..Wanted::default()
     };
     renderer.precompute(scene, wanted)?;
-    let began = Instant::now();
+    let (began, used) = (Instant::now(), processor_ms());
     let rendering = renderer.render(scene, wanted)?;
     Ok(FrameTime {
         frame_ms: began.elapsed().as_secs_f64() * 1e3,
+        processor_ms: used.and_then(|used| Some(processor_ms()? - used)),
         render_ms: rendering.render_ms,
         passes: rendering.passes,
     })

@@ -9,6 +9,7 @@ mod memory;
 mod pareto;
 mod peer;
 mod program;
+mod processor;
 mod settings;
 mod truth;
 mod wrongness;

@@ -1,7 +1,9 @@
 //! The program run from outside, in a folder of its own.
 #![allow(dead_code)] // each test program uses its own part
 
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -85,6 +87,18 @@ impl Place {
     pub fn json(&self, name: &str) -> Value {
         serde_json::from_str(&std::fs::read_to_string(self.path(name)).unwrap()).unwrap()
     }
+}
+
+/// The display pixels of a PNG, 0..1.
+pub fn pixels(path: &Path) -> Vec<[f64; 3]> {
+    let file = BufReader::new(File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    let pixels = bytes[..info.buffer_size()].chunks_exact(info.color_type.samples());
+    pixels
+        .map(|p| [p[0], p[1], p[2]].map(|c| f64::from(c) / 255.0))
+        .collect()
 }
 
 pub fn stderr(output: &Output) -> String {

@@ -152,6 +152,7 @@ impl CompareArguments {
             version: VERSION,
             progress: &bars,
         };
+        comparison.check(&peers)?;
         message(format_args!("compare on {}", device.info().name));
         let compared = comparison.run(&mut renderer, &mut peers)?;
         let (rows, findings) = (compared.rows.clone(), compared.findings.clone());

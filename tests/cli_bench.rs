@@ -40,6 +40,8 @@ fn the_help_lists_every_experiment_and_has_an_example() {
 #[test]
 fn wrong_usage_says_what_there_is() {
     let place = Place::with_ball();
+    place.write("quick.toml", "quick = true\n");
+    place.write("both.toml", "quick = true\nfull = true\n");
     for line in ["bench", "bench vesels"] {
         let said = place.refused(line, 2);
         let (_, hint) = said.split_once("hint: ").unwrap();
@@ -49,7 +51,17 @@ fn wrong_usage_says_what_there_is() {
         ("bench rays ball.nrrd", "takes no volumes"),
         ("bench vessels --rays 5", "no effect"),
         ("bench rays --rays 0", "measures nothing"),
-        ("bench vessels --quick --full", "cannot be used with"),
+        ("bench vessels --quick --full", "do not go together"),
+        ("bench vessels --scene both.toml", "do not go together"),
+        // A flag wins over the file: what is refused is another thing.
+        (
+            "bench vessels --scene quick.toml --full --device reference",
+            "cannot be measured",
+        ),
+        (
+            "bench vessels --quick=off --full --device reference",
+            "cannot be measured",
+        ),
         ("bench vessels --device reference", "cannot be measured"),
         ("bench b1 --iso 3", "no effect without a volume"),
         ("bench b1 ball.nrrd --iso 3x", "not a value"),
@@ -74,6 +86,16 @@ fn what_cannot_be_read_or_written_fails_before_the_work() {
     let place = Place::empty();
     let said = place.refused(&format!("bench vessels none.nrrd {device}"), 1);
     assert!(said.contains("none.nrrd"), "{said}");
+    place.done("phantom sphere -o ball.nrrd --size 16");
+    for iso in ["-1", "201"] {
+        let said = place.refused(&format!("bench b1 ball.nrrd --iso {iso} {device}"), 2);
+        assert!(said.contains("lies outside"), "{said}");
+        assert!(said.contains("0 to 200"), "{said}");
+    }
+    std::fs::create_dir_all(place.path("page/report.html")).unwrap();
+    let output = place.run(&format!("bench convergence -o page {device}"));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("report.html: cannot write"));
     place.write("taken", "");
     let line = format!("bench convergence -o taken {device}");
     let output = place.run(&line);
@@ -129,6 +151,18 @@ fn vessels_end_in_a_table_and_leave_it_as_files() {
     let page = std::fs::read_to_string(place.path("out/first/report.html")).unwrap();
     assert!(page.contains("angioray bench vessels ball.nrrd --quick"));
     assert!(page.contains("step 0.5, regula-falsi:5, probe"));
+    assert!(page.contains("Surface: time against hits missed"));
+    // What was run, for those who find the file.
+    let said = |key: &str| json["run"][key].as_str().unwrap().to_owned();
+    assert_eq!(said("effort"), "quick");
+    assert!(said("volumes").starts_with("ball (16x16x16"), "{json:#}");
+    let line = json["command_line"].as_str().unwrap();
+    assert!(line.starts_with("angioray bench vessels ball.nrrd --quick"));
+    assert_eq!(json["size"], serde_json::json!([128, 128]));
+    assert_eq!(
+        (&json["repeats"], &json["protocol"]),
+        (&3.into(), &"static".into())
+    );
 }
 
 #[test]

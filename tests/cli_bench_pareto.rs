@@ -77,8 +77,16 @@ fn the_grid_is_judged_and_nothing_clearly_beats_its_front() {
         assert_eq!(error_of(&iso, &format!("exact, {way}")), exact, "{way}");
     }
     let mip = settings(&results, "mip");
-    assert!(error_of(&mip, "exact") < 1e-4, "in % of the range");
+    assert!(error_of(&mip, "exact") < 1e-6, "a share of the range");
     assert!(error_of(&mip, "step 0.5, nearest") > error_of(&mip, "step 0.5"));
     let dvr = settings(&results, "dvr");
+    for row in results["rows"].as_array().unwrap() {
+        // 0 to 1, as everywhere.
+        let rmse = row["color_rmse"].as_f64().unwrap();
+        assert!((0.0..1.0).contains(&rmse), "{row}");
+        if row["mode"] == "dvr" {
+            assert_eq!(row["error"], row["color_rmse"]);
+        }
+    }
     assert!(error_of(&dvr, "adaptive:1e-4") < error_of(&dvr, "step 1, riemann"));
 }

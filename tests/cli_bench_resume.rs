@@ -5,6 +5,7 @@
 mod cli_place;
 mod common;
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -155,12 +156,84 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
     place.done("phantom gaussian -o bump.nrrd --size 20");
     let said = refused(&format!("bench traversals {VOLUMES} --quick"));
     assert!(said.contains("its volumes was"), "{said}");
+    place.done("phantom gaussian -o bump.nrrd --size 24");
+    // Other kernels, from a folder: the embedded ones, one of them changed.
+    let kernels = place.path("kernels");
+    for file in angioray::gpu::files() {
+        let copy = kernels.join(file);
+        std::fs::create_dir_all(copy.parent().unwrap()).unwrap();
+        std::fs::copy(Path::new("kernels").join(file), copy).unwrap();
+    }
+    let told_with_kernels = || {
+        let mut command = place.command(&format!("{line} --protocol static"));
+        let output = command.env("ANGIORAY_KERNELS", &kernels).output().unwrap();
+        stderr(&output)
+    };
+    // The control: the same kernels from elsewhere are no others.
+    let said = told_with_kernels();
+    assert!(said.contains("its protocol was"), "{said}");
+    let changed = kernels.join("lib/cubic.clh");
+    let text = std::fs::read_to_string(&changed).unwrap();
+    std::fs::write(&changed, text + "// another\n").unwrap();
+    let said = told_with_kernels();
+    assert!(said.contains("its kernels was"), "{said}");
+    // Another build of the same version.
+    let other = place.path("angioray-other");
+    let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_angioray")).unwrap();
+    bytes.push(0);
+    std::fs::write(&other, bytes).unwrap();
+    let permissions = std::fs::metadata(env!("CARGO_BIN_EXE_angioray")).unwrap();
+    std::fs::set_permissions(&other, permissions.permissions()).unwrap();
+    let mut command = Command::new(&other);
+    let words = line.split_whitespace();
+    let output = command.args(words).current_dir(place.path("")).output();
+    let said = stderr(&output.unwrap());
+    assert!(said.contains("its program was"), "{said}");
     let begun = place.run(&format!(
         "bench convergence --quick --restart -o out {device}"
     ));
     assert!(begun.status.success(), "{}", stderr(&begun));
     assert!(!stderr(&begun).contains("going on"));
     assert_eq!(place.json("out/results.json")["experiment"], "convergence");
+}
+
+#[test]
+fn rays_that_are_stopped_go_on_and_end_as_if_they_never_were() {
+    let Some(device) = device() else { return };
+    let place = Place::empty();
+    let line = |folder: &str| format!("bench rays --rays 300000 -o {folder} {device}");
+    let (code, said) = stopped(&place, &line("out"), "out", 1, "TERM");
+    assert_eq!(code, 75, "{said}");
+    assert!(said.contains("error: stopped before the end; "), "{said}");
+    let all = |folder: &str| {
+        rows(&place, folder).pop().unwrap()["rays"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!((50_000.0..300_000.0).contains(&all("out")));
+    let output = place.run(&line("out"));
+    let said = stderr(&output);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("going on with what was measured"), "{said}");
+    assert_eq!(all("out"), 300_000.0);
+    place.done(&line("other"));
+    assert_eq!(rows(&place, "out"), rows(&place, "other"));
+}
+
+#[test]
+fn what_an_older_run_has_found_is_not_taken_for_this_ones() {
+    let Some(device) = device() else { return };
+    let place = place();
+    place.done(&format!("bench convergence -o out {device}"));
+    assert!(place.path("out/report.html").exists());
+    let line = format!("bench traversals {VOLUMES} --quick -o out {device}");
+    let (code, said) = stopped(&place, &line, "out", 1, "KILL");
+    assert_eq!(code, -1, "{said}");
+    assert!(!place.path("out/report.html").exists());
+    let results = place.path("out/results.json");
+    if results.exists() {
+        assert_eq!(place.json("out/results.json")["experiment"], "traversals");
+    }
 }
 
 #[test]

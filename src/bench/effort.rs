@@ -10,6 +10,7 @@ pub enum Effort {
 }
 
 impl Effort {
+    /// For files and pages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quick => "quick",

@@ -16,7 +16,8 @@ use crate::error::{Error, Result};
 pub struct Run(pub Vec<(&'static str, String)>);
 
 impl Run {
-    fn value(&self) -> Value {
+    /// An object of names and values.
+    pub fn value(&self) -> Value {
         let pairs = self.0.iter();
         let pairs = pairs.map(|(name, value)| ((*name).to_owned(), Value::from(value.as_str())));
         Value::Object(pairs.collect::<Map<_, _>>())
@@ -39,6 +40,8 @@ pub struct Journal {
     /// Locked as long as the run lasts; at its end.
     file: File,
     found: HashMap<String, Value>,
+    /// Whether nothing was here to go on with.
+    begun: bool,
 }
 
 impl Journal {
@@ -82,8 +85,9 @@ impl Journal {
             path,
             file,
             found: HashMap::new(),
+            begun: bytes.is_empty(),
         };
-        if bytes.is_empty() {
+        if journal.begun {
             journal.write(&json!({ "run": run.value() }))?;
         } else {
             journal.found = journal.read(folder, run, &bytes)?;
@@ -126,6 +130,11 @@ impl Journal {
     fn damaged(&self, line: usize) -> Error {
         Error::failed(format!("{}: line {line} is damaged", self.path.display()))
             .hint("begin anew with --restart")
+    }
+
+    /// Whether nothing was here to go on with.
+    pub fn is_begun(&self) -> bool {
+        self.begun
     }
 
     /// How many units are known.

@@ -6,10 +6,12 @@
 pub mod aimed;
 mod borderline;
 mod compare;
+mod conduct;
 pub mod convergence;
 mod draws;
 mod effort;
 mod experiments;
+mod illustration;
 mod journal;
 mod page;
 mod protocol;
@@ -20,8 +22,10 @@ mod store;
 mod verdict;
 mod ways;
 
+pub use conduct::Conduct;
 pub use effort::Effort;
 pub use experiments::EXPERIMENTS;
+pub use illustration::Illustration;
 pub use journal::Run;
 pub use protocol::Protocol;
 pub use specimen::Specimen;
@@ -32,9 +36,9 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Wanted};
+use crate::frame::Wanted;
 use crate::gpu::Device;
-use crate::measure::{Times, interleaved};
+use crate::measure::{Times, hash_kernels, hash_program, interleaved};
 use crate::octree::{Leaf, Octree};
 use crate::progress::Progress;
 use crate::render::{Options, Renderer};
@@ -43,11 +47,15 @@ use crate::scene::Scene;
 
 /// What an experiment is given to work with.
 pub struct Bench<'a> {
+    /// What is measured.
     pub experiment: &'static Experiment,
     /// The line that runs it again.
     pub command: String,
+    /// What is measured on.
     pub device: &'a Device,
+    /// How the device is used.
     pub options: Options,
+    /// How thoroughly.
     pub effort: Effort,
     /// The user's choice.
     pub protocol: Option<Protocol>,
@@ -55,6 +63,7 @@ pub struct Bench<'a> {
     pub specimens: Vec<Specimen>,
     /// How many rays, where the experiment counts rays and the user said so.
     pub rays: Option<u64>,
+    /// Who is told how far the work is.
     pub progress: &'a dyn Progress,
     /// Where the user wants the results kept.
     pub store: Option<Store>,
@@ -62,12 +71,21 @@ pub struct Bench<'a> {
 
 impl Bench<'_> {
     /// What this run is of: only a run of the same can go on with it.
-    pub fn run(&self) -> Run {
+    ///
+    /// # Errors
+    /// The program cannot read its own file.
+    pub fn run(&self) -> Result<Run> {
+        let (mut program, mut kernels) = (blake3::Hasher::new(), blake3::Hasher::new());
+        hash_program(&mut program)?;
+        hash_kernels(&mut kernels);
+        let hash = |hasher: blake3::Hasher| hasher.finalize().to_hex()[..16].to_owned();
         let device = self.device.info();
         let volumes = self.specimens.iter().map(Specimen::identity);
         let told = |choice: Option<String>| choice.unwrap_or_else(|| "the default".into());
-        Run(vec![
+        Ok(Run(vec![
             ("version", env!("CARGO_PKG_VERSION").into()),
+            ("program", hash(program)),
+            ("kernels", hash(kernels)),
             ("experiment", self.experiment.name.into()),
             ("effort", self.effort.name().into()),
             ("protocol", told(self.protocol.map(|one| one.to_string()))),
@@ -78,7 +96,7 @@ impl Bench<'_> {
                 format!("{}, {}, {}", device.name, device.platform, device.driver),
             ),
             ("work group", format!("{:?}", self.options.work_group)),
-        ])
+        ]))
     }
 
     /// A piece of work that is done once: computed, and kept where the user wants results kept; or
@@ -110,6 +128,18 @@ impl Bench<'_> {
         }
     }
 
+    /// Between two steps of a unit: whether the user asked for the end. Without a store a signal
+    /// ends the process by itself.
+    ///
+    /// # Errors
+    /// Stopped.
+    fn check_stop(&self) -> Result<()> {
+        match &self.store {
+            Some(store) => store.check_stop(),
+            None => Ok(()),
+        }
+    }
+
     /// How frames are timed.
     fn protocol(&self) -> Protocol {
         self.protocol.unwrap_or_default()
@@ -126,12 +156,16 @@ impl Bench<'_> {
     /// What times stand for, for the findings.
     fn timed(&self) -> String {
         let side_px = self.effort.side_px();
-        format!(
+        let mut told = format!(
             "times are {}: pictures of {side_px}x{side_px} pixels unless told otherwise, on {}; \
              ratios are the medians of each round's own",
             self.protocol().told(self.effort),
             self.device.info().name
-        )
+        );
+        if self.protocol() == Protocol::Orbit {
+            told += "; errors and counters are of the orbit's first place alone";
+        }
+        told
     }
 
     /// How long the device takes for each of `scenes`: pictures for display, of which nothing else
@@ -151,17 +185,28 @@ impl Bench<'_> {
         mut once: impl FnMut(&S, f64) -> Result<f64>,
     ) -> Result<Vec<Times>> {
         let frames = protocol.frames(self.effort);
-        self.progress
-            .begin("timing", (settings.len() * (frames + 1)) as u64);
-        let mut renderings = 0;
-        let times = interleaved(settings, frames, |setting| {
-            if let Some(store) = &self.store {
-                store.check_stop()?;
-            }
-            self.progress.advance(1);
-            let round = renderings / settings.len();
-            renderings += 1;
+        self.times_of(settings, frames, |setting, round| {
             once(setting, protocol.azimuth_deg(self.effort, round))
+        })
+    }
+
+    /// How long each of `settings` takes in so many rounds: `once` gives the ms in a round, the first
+    /// of which is for warming up.
+    fn times_of<S>(
+        &self,
+        settings: &[S],
+        rounds: usize,
+        mut once: impl FnMut(&S, usize) -> Result<f64>,
+    ) -> Result<Vec<Times>> {
+        self.progress
+            .begin("timing", (settings.len() * (rounds + 1)) as u64);
+        let mut measured = 0;
+        let times = interleaved(settings, rounds, |setting| {
+            self.check_stop()?;
+            self.progress.advance(1);
+            let round = measured / settings.len();
+            measured += 1;
+            once(setting, round)
         });
         self.progress.end();
         times
@@ -170,10 +215,7 @@ impl Bench<'_> {
 
 /// The device time of a picture for display, of which nothing else is asked, its camera turned.
 fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Result<f64> {
-    let wanted = Wanted {
-        display: true,
-        ..Wanted::default()
-    };
+    let wanted = Wanted::DISPLAY;
     let rendering = if azimuth_deg == 0.0 {
         renderer.render(scene, wanted)?
     } else {
@@ -185,12 +227,15 @@ fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Resul
 
 /// What an experiment found.
 pub struct Outcome {
+    /// The figures, a row each.
     pub table: Table,
+    /// How they were measured.
+    pub conduct: Conduct,
     /// What the table shows, a sentence each.
     pub findings: Vec<String>,
     /// Of the page, before its table: a volume or a picture each.
     pub sections: Vec<Section>,
-    pub pictures: Vec<Shot>,
+    pub pictures: Vec<Illustration>,
     /// Why the experiment failed: what must hold does not.
     pub failure: Option<String>,
 }
@@ -200,33 +245,12 @@ impl Outcome {
     pub fn of(table: Table) -> Self {
         Self {
             table,
+            conduct: Conduct::default(),
             findings: Vec::new(),
             sections: Vec::new(),
             pictures: Vec::new(),
             failure: None,
         }
-    }
-}
-
-/// A picture that belongs to the findings.
-pub struct Shot {
-    /// The section of the page in which it is shown.
-    pub section: String,
-    /// What it is called there.
-    pub label: String,
-    /// What is seen, a line.
-    pub caption: String,
-    /// With its display plane.
-    pub frame: Frame,
-}
-
-impl Shot {
-    /// The name of its file.
-    pub fn file(&self) -> String {
-        let name = format!("{} {}", self.section, self.label);
-        let words = name.split(|c: char| !(c.is_alphanumeric() || c == '.'));
-        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-        words.join("-") + ".png"
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::report::{Gallery, Picture, Report, Section};
 
-use super::{Bench, Outcome};
+use super::{Bench, Conduct, Illustration, Outcome};
 
 /// Of a run whose pictures lie as files in `folder`.
 ///
@@ -13,19 +13,22 @@ use super::{Bench, Outcome};
 /// A picture that cannot be read.
 pub fn report(bench: &Bench, outcome: &Outcome, folder: &Path) -> Result<Report> {
     let mut sections = outcome.sections.clone();
-    for shot in &outcome.pictures {
-        let path = folder.join(shot.file());
+    let files = Illustration::files(&outcome.pictures);
+    for (illustration, file) in outcome.pictures.iter().zip(files) {
+        let path = folder.join(file);
         let png = std::fs::read(&path).map_err(|cause| Error::io(&path, "read", &cause))?;
         let picture = Picture {
-            label: shot.label.clone(),
-            caption: shot.caption.clone(),
+            label: illustration.label.clone(),
+            caption: illustration.caption.clone(),
             png,
             error_map: None,
         };
-        let place = sections.iter().position(|one| one.title == shot.section);
+        let place = sections
+            .iter()
+            .position(|one| one.title == illustration.section);
         let place = place.unwrap_or_else(|| {
             sections.push(Section {
-                title: shot.section.clone(),
+                title: illustration.section.clone(),
                 ..Section::default()
             });
             sections.len() - 1
@@ -43,14 +46,14 @@ pub fn report(bench: &Bench, outcome: &Outcome, folder: &Path) -> Result<Report>
     Ok(Report {
         title: format!("angioray bench {}", bench.experiment.name),
         summary: format!("What was measured: {}.", bench.experiment.about),
-        facts: facts(bench),
+        facts: facts(bench, outcome.conduct),
         command: bench.command.clone(),
         findings,
         sections,
     })
 }
 
-fn facts(bench: &Bench) -> Vec<(String, String)> {
+fn facts(bench: &Bench, conduct: Conduct) -> Vec<(String, String)> {
     let device = bench.device.info();
     let volumes = bench.specimens.iter().map(|specimen| {
         let (dims, kind) = (
@@ -68,9 +71,14 @@ fn facts(bench: &Bench) -> Vec<(String, String)> {
         ("volumes", volumes),
         ("effort", bench.effort.name().to_owned()),
     ];
-    if bench.experiment.times_frames {
-        let protocol = bench.protocol.map(|protocol| protocol.to_string());
-        facts.push(("protocol", protocol.unwrap_or_else(|| "the default".into())));
+    if let Some(side_px) = conduct.side_px {
+        facts.push(("pictures", format!("{side_px}x{side_px} pixels")));
+    }
+    if let Some(protocol) = conduct.protocol {
+        facts.push(("protocol", protocol.to_string()));
+    }
+    if let Some(repeats) = conduct.repeats {
+        facts.push(("repeats", repeats.to_string()));
     }
     facts.extend([
         ("device", device.name.clone()),

@@ -1,22 +1,22 @@
 //! The files that an experiment leaves.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::frame::{self, Encoding, Format};
-use crate::output::{check_writable, write_atomically};
+use crate::output::{check_writable, write_bytes};
 
 use super::page::report;
-use super::{Bench, Outcome};
+use super::{Bench, Illustration, Outcome, Run};
 
 /// `results.csv` and `results.json` in one folder; in the end pictures and `report.html` beside them.
 pub struct Results {
     folder: PathBuf,
     csv: PathBuf,
     json: PathBuf,
+    page: PathBuf,
 }
 
 impl Results {
@@ -31,27 +31,47 @@ impl Results {
             folder: folder.to_owned(),
             csv: folder.join("results.csv"),
             json: folder.join("results.json"),
+            page: folder.join("report.html"),
         };
-        check_writable(&results.csv)?;
-        check_writable(&results.json)?;
+        results.tables().into_iter().try_for_each(check_writable)?;
         Ok(results)
     }
 
-    /// Writes the table; `finished` tells whether it is whole.
+    /// Removes what another run has left here, which would be taken for this one's.
     ///
     /// # Errors
     /// The disk.
-    pub fn write(&self, bench: &Bench, outcome: &Outcome, finished: bool) -> Result<()> {
+    pub fn forget(&self) -> Result<()> {
+        for path in self.tables() {
+            if path.is_file() {
+                std::fs::remove_file(path)
+                    .map_err(|cause| Error::io(path, "remove the file", &cause))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tables(&self) -> [&Path; 3] {
+        [&self.csv, &self.json, &self.page]
+    }
+
+    /// Writes the table; `finished` tells whether all files are whole.
+    ///
+    /// # Errors
+    /// The disk.
+    pub fn write(&self, bench: &Bench, run: &Run, outcome: &Outcome, finished: bool) -> Result<()> {
         let device = bench.device.info();
-        let effort = bench.effort;
+        let conduct = outcome.conduct;
         let document = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "command": "bench",
+            "command_line": bench.command,
             "experiment": bench.experiment.name,
             "finished": finished,
-            "size": [effort.side_px(), effort.side_px()],
-            "repeats": effort.repeats(),
-            "protocol": bench.protocol().name(),
+            "run": run.value(),
+            "size": conduct.side_px.map(|side_px| [side_px, side_px]),
+            "repeats": conduct.repeats,
+            "protocol": conduct.protocol.map(|protocol| protocol.name()),
             "device": {
                 "name": device.name,
                 "platform": device.platform,
@@ -61,32 +81,25 @@ impl Results {
             "findings": outcome.findings,
             "failure": outcome.failure,
         });
-        write_text(&self.csv, &outcome.table.csv())?;
-        write_text(&self.json, &format!("{document:#}\n"))
+        write_bytes(&self.csv, outcome.table.csv().as_bytes())?;
+        write_bytes(&self.json, format!("{document:#}\n").as_bytes())
     }
 
-    /// Writes everything, and gives the files.
+    /// Writes everything, the table last, and gives the files.
     ///
     /// # Errors
     /// The disk.
-    pub fn write_all(&self, bench: &Bench, outcome: &Outcome) -> Result<Vec<PathBuf>> {
-        self.write(bench, outcome, true)?;
+    pub fn write_all(&self, bench: &Bench, run: &Run, outcome: &Outcome) -> Result<Vec<PathBuf>> {
         let mut files = vec![self.csv.clone(), self.json.clone()];
-        for picture in &outcome.pictures {
-            let path = self.folder.join(picture.file());
+        let names = Illustration::files(&outcome.pictures);
+        for (picture, name) in outcome.pictures.iter().zip(names) {
+            let path = self.folder.join(name);
             frame::write(&path, &picture.frame, &Encoding::new(Format::Png), &[])?;
             files.push(path);
         }
-        let page = self.folder.join("report.html");
-        report(bench, outcome, &self.folder)?.write(&page)?;
-        files.push(page);
+        report(bench, outcome, &self.folder)?.write(&self.page)?;
+        files.push(self.page.clone());
+        self.write(bench, run, outcome, true)?;
         Ok(files)
     }
-}
-
-fn write_text(path: &Path, text: &str) -> Result<()> {
-    write_atomically(path, |out| {
-        out.write_all(text.as_bytes())
-            .map_err(|cause| Error::io(path, "write", &cause))
-    })
 }

@@ -17,6 +17,8 @@ use super::{Bench, Outcome};
 /// Made before the work begins, so that what cannot be written is known then.
 pub struct Store {
     folder: PathBuf,
+    /// What the work is.
+    run: Run,
     results: Results,
     journal: RefCell<Journal>,
     /// Units measured before this process began.
@@ -27,14 +29,18 @@ pub struct Store {
 
 impl Store {
     /// Makes the folder where there is none. The work ends between two units, or in one, when
-    /// [`stop::asked`] says so.
+    /// [`stop::asked`] says so. What another run has left there is removed.
     ///
     /// # Errors
     /// The folder cannot be made, takes no files, or holds what another run has left unfinished.
     pub fn in_folder(folder: &Path, run: &Run, restart: bool) -> Result<Self> {
         let results = Results::in_folder(folder)?;
         let journal = Journal::open(folder, run, restart)?;
+        if journal.is_begun() {
+            results.forget()?;
+        }
         Ok(Self {
+            run: run.clone(),
             folder: folder.to_owned(),
             results,
             before: journal.units(),
@@ -93,7 +99,7 @@ impl Store {
 
     /// The rows so far.
     pub(super) fn so_far(&self, bench: &Bench, outcome: &Outcome) -> Result<()> {
-        self.results.write(bench, outcome, false)
+        self.results.write(bench, &self.run, outcome, false)
     }
 
     /// All that was found; nothing is left to go on with. Gives the files.
@@ -101,7 +107,7 @@ impl Store {
     /// # Errors
     /// The disk.
     pub fn finish(&self, bench: &Bench, outcome: &Outcome) -> Result<Vec<PathBuf>> {
-        let files = self.results.write_all(bench, outcome)?;
+        let files = self.results.write_all(bench, &self.run, outcome)?;
         self.journal.borrow().finish()?;
         Ok(files)
     }

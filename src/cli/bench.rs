@@ -80,7 +80,7 @@ group! {
 
         /// Pictures of 128 pixels a side, 3 repeats [default: 256, 5 repeats]
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
-            default_missing_value = "on", conflicts_with = "full")]
+            default_missing_value = "on")]
         quick: Switch,
 
         /// Pictures of 512 pixels a side, 7 repeats
@@ -111,6 +111,11 @@ impl BenchArguments {
         of_file.volumes = of_file.volumes.map(named_here);
         let device = self.device.keep_of(file.group()?);
         let device = self.device.over(device);
+        let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
+        if is_on(self.bench.quick) || is_on(self.bench.full) {
+            // Either flag says all that a file says by both keys.
+            (of_file.quick, of_file.full) = (None, None);
+        }
         let options = self.bench.over(of_file);
 
         let Some(name) = &options.experiment else {
@@ -142,13 +147,13 @@ impl BenchArguments {
             return Err(Error::usage("'--iso' has no effect without a volume")
                 .hint("name the volumes that are looked at there"));
         }
-        let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
         if is_on(options.restart) && options.output.is_none() {
             return Err(Error::usage("'--restart' has no effect without '--output'"));
         }
         let effort = match (is_on(options.quick), is_on(options.full)) {
             (true, true) => {
-                return Err(Error::usage("'quick' and 'full' do not go together"));
+                return Err(Error::usage("'quick' and 'full' do not go together")
+                    .hint("choose one of them"));
             }
             (true, false) => Effort::Quick,
             (false, true) => Effort::Full,
@@ -171,11 +176,9 @@ impl BenchArguments {
         for FilePath(path) in &volumes {
             let mut specimen = specimen(path, options.iso, &bars)?;
             specimen.check()?;
-            let alike = |other: &&Specimen| other.name.split(" (").next() == Some(&specimen.name);
-            let alike = specimens.iter().filter(alike).count();
-            if alike > 0 {
-                specimen.name = format!("{} ({})", specimen.name, alike + 1);
-            }
+            specimen.name = free_name(&specimen.name, |name| {
+                specimens.iter().any(|other| other.name == name)
+            });
             specimens.push(specimen);
         }
         let mut bench = Bench {
@@ -193,7 +196,7 @@ impl BenchArguments {
             store: None,
         };
         if let Some(FilePath(folder)) = &options.output {
-            let store = Store::in_folder(folder, &bench.run(), is_on(options.restart))?;
+            let store = Store::in_folder(folder, &bench.run()?, is_on(options.restart))?;
             if store.known_units() > 0 {
                 note(format_args!(
                     "going on with what was measured before: {} units of work",
@@ -232,6 +235,19 @@ fn specimen(path: &Path, iso: Option<Threshold>, progress: &dyn Progress) -> Res
     let loaded = source.load(progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let told = iso.map(|iso| iso.resolve(&loaded.subject));
+    let range = loaded.volume.range();
+    if let Some(told) = told
+        && !(range.min..=range.max).contains(&told)
+    {
+        return Err(Error::usage(format!(
+            "'--iso {}' lies outside the values of {}, {} to {}: there is no surface",
+            concise(told),
+            path.display(),
+            concise(range.min),
+            concise(range.max)
+        ))
+        .hint("name a value between them, or a share of the value range such as 50%"));
+    }
     let specimen = Specimen {
         // Without what tells the format.
         name: name.split('.').next().unwrap_or_default().to_owned(),
@@ -250,4 +266,38 @@ fn specimen(path: &Path, iso: Option<Threshold>, progress: &dyn Progress) -> Res
         ));
     }
     Ok(specimen)
+}
+
+/// The name, numbered from 2 on where it is taken.
+fn free_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    let mut free = name.to_owned();
+    let mut number = 1;
+    while is_taken(&free) {
+        number += 1;
+        free = format!("{name} ({number})");
+    }
+    free
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_names_are_numbered_until_one_is_free() {
+        let mut names: Vec<String> = Vec::new();
+        for name in ["head", "head (1)", "head", "head (3)", "head", "head (2)"] {
+            let name = free_name(name, |other| names.iter().any(|taken| taken == other));
+            names.push(name);
+        }
+        let expected = [
+            "head",
+            "head (1)",
+            "head (2)",
+            "head (3)",
+            "head (4)",
+            "head (2) (2)",
+        ];
+        assert_eq!(names, expected);
+    }
 }

@@ -236,6 +236,17 @@ impl Wanted {
         certificate: true,
     };
 
+    /// A picture to be looked at, and nothing else of it.
+    pub const DISPLAY: Self = Self {
+        display: true,
+        depth: false,
+        normal: false,
+        value: false,
+        counters: false,
+        kind: false,
+        certificate: false,
+    };
+
     /// The planes that a file in `encoding` is written from; with `stats` also those that the
     /// statistics count (steps, nodes, hits).
     pub fn for_encoding(encoding: &Encoding, stats: bool) -> Self {

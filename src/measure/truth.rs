@@ -22,6 +22,8 @@ use crate::reference;
 use crate::scene::Scene;
 use crate::volume::Volume;
 
+use super::program::hash_program;
+
 /// Where reference pictures of one volume come from.
 pub struct Truth<'a> {
     volume: &'a Volume,
@@ -133,17 +135,6 @@ fn forget_old(folder: &Path) {
             let _ = std::fs::remove_file(path);
         }
     }
-}
-
-/// A program built anew may have another reference.
-fn hash_program(hasher: &mut blake3::Hasher) -> Result<()> {
-    let failed = |cause: std::io::Error| {
-        Error::failed(format!("the program cannot read its own file: {cause}"))
-    };
-    let path = std::env::current_exe().map_err(failed)?;
-    let file = std::fs::File::open(path).map_err(failed)?;
-    hasher.update_reader(file).map_err(failed)?;
-    Ok(())
 }
 
 /// The colour and then the other planes, zlib-compressed (whose checksum shows a torn file).

@@ -12,12 +12,19 @@ pub struct Wrongness {
     pub title: &'static str,
     /// Empty where the figure has none.
     pub unit: &'static str,
+    /// How many of the unit are 1: shares and colours are 0 to 1 for programs.
+    pub scale: f64,
     of: fn(&Figures) -> Option<f64>,
 }
 
 impl Wrongness {
-    /// Nothing where the figures do not tell.
+    /// In its unit, for people; nothing where the figures do not tell.
     pub fn of(&self, figures: &Figures) -> Option<f64> {
+        Some(self.scale * self.unscaled(figures)?)
+    }
+
+    /// For programs: shares, colours of 0 to 1, voxels; nothing where the figures do not tell.
+    pub fn unscaled(&self, figures: &Figures) -> Option<f64> {
         (self.of)(figures)
     }
 
@@ -35,12 +42,13 @@ const WRONG_HITS: Wrongness = Wrongness {
     key: "wrong_hits",
     title: "hits missed or added",
     unit: "% of the reference's",
+    scale: 100.0,
     of: |figures| {
         let depth = figures.depth?;
         let wrong = (depth.missed + depth.extra) as f64;
         // Where the reference hits nothing every hit is one too many.
         let hits = depth.reference_hits.max(1) as f64;
-        Some(100.0 * wrong / hits)
+        Some(wrong / hits)
     },
 };
 
@@ -48,6 +56,7 @@ const DEPTH_P99: Wrongness = Wrongness {
     key: "depth_p99",
     title: "depth error, 99th percentile",
     unit: "voxels",
+    scale: 1.0,
     of: |figures| figures.depth?.p99,
 };
 
@@ -55,19 +64,22 @@ const VALUE_RMSE: Wrongness = Wrongness {
     key: "value_rmse",
     title: "error of the projected value, rms",
     unit: "% of the value range",
-    of: |figures| Some(100.0 * figures.value?.rmse?),
+    scale: 100.0,
+    of: |figures| figures.value?.rmse,
 };
 
 const COLOR_RMSE: Wrongness = Wrongness {
     key: "color_rmse",
     title: "colour error, rms",
     unit: "of 255",
-    of: |figures| Some(255.0 * figures.color?.rmse),
+    scale: 255.0,
+    of: |figures| Some(figures.color?.rmse),
 };
 
 const COLOR_MAX: Wrongness = Wrongness {
     key: "color_max",
     title: "colour error, greatest",
     unit: "of 255",
-    of: |figures| Some(255.0 * figures.color?.max),
+    scale: 255.0,
+    of: |figures| Some(figures.color?.max),
 };

@@ -7,13 +7,14 @@ mod volumes;
 use std::fmt;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{Certificate, Kind};
 use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::render::{FirstCrossing, RayCaster};
 use crate::scene::{
     Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
@@ -27,7 +28,7 @@ pub use volumes::{Target, target};
 use glam::DVec3;
 
 /// Answers of one aim.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     pub rays: u64,
     /// Of the reference.
@@ -68,7 +69,7 @@ impl Tally {
 }
 
 /// The tallies of all aims, and the first rays that went wrong.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Report {
     /// One an aim, in the order of [`Aim::ALL`].
     pub tallies: [Tally; Aim::ALL.len()],
@@ -82,6 +83,17 @@ impl Report {
 
     pub fn total(&self) -> Tally {
         self.tallies.into_iter().fold(Tally::default(), Tally::add)
+    }
+
+    /// This report and that of `later` rays.
+    #[must_use]
+    pub fn and(mut self, later: Self) -> Self {
+        for (of, tally) in self.tallies.iter_mut().zip(later.tallies) {
+            *of = of.add(tally);
+        }
+        let room = Self::MOST_TOLD.saturating_sub(self.wrong.len());
+        self.wrong.extend(later.wrong.into_iter().take(room));
+        self
     }
 }
 
@@ -122,7 +134,13 @@ impl fmt::Display for Report {
 }
 
 /// Rays at one target, before the next is made.
-const RAYS_A_TARGET: usize = 50_000;
+const RAYS_A_TARGET: u64 = 50_000;
+
+/// The targets, by number, at which `count` rays are aimed, and how many at each.
+pub fn targets(count: u64) -> impl Iterator<Item = (u64, u64)> {
+    let targets = 0..count.div_ceil(RAYS_A_TARGET);
+    targets.map(move |n| (n, (count - n * RAYS_A_TARGET).min(RAYS_A_TARGET)))
+}
 
 /// Casts `count` rays on the device and judges them. Reports a unit of progress a ray.
 ///
@@ -132,29 +150,35 @@ pub fn run(device: &Device, seed: u64, count: u64, progress: &dyn Progress) -> R
     let mut report = Report::default();
     progress.begin("aimed rays", count);
     let mut caster = RayCaster::new(device);
-    let targets = count.div_ceil(RAYS_A_TARGET as u64);
-    for n in 0..targets {
-        let here = (count - n * RAYS_A_TARGET as u64).min(RAYS_A_TARGET as u64);
-        let target = target(seed, n as u32)?;
-        let octree = Octree::build(&target.volume, Leaf::new(4)?, progress)?;
-        let aimed = rays(&target, seed.wrapping_add(n), here as usize);
-        let pairs: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
-        let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &pairs)?;
-        judge(&target, n, &aimed, &found, &mut report)?;
-        progress.advance(here);
+    for (number, rays) in targets(count) {
+        report = report.and(at_target(&mut caster, seed, number, rays)?);
+        progress.advance(rays);
     }
     progress.end();
     Ok(report)
 }
 
-/// Adds the verdicts on one target's rays.
+/// Casts `count` rays at one target and judges them.
+///
+/// # Errors
+/// The device fails.
+pub fn at_target(caster: &mut RayCaster, seed: u64, number: u64, count: u64) -> Result<Report> {
+    let target = target(seed, number as u32)?;
+    let octree = Octree::build(&target.volume, Leaf::new(4)?, &Silent)?;
+    let aimed = rays(&target, seed.wrapping_add(number), count as usize);
+    let pairs: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
+    let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &pairs)?;
+    judge(&target, number, &aimed, &found)
+}
+
+/// The verdicts on one target's rays.
 fn judge(
     target: &Target,
     number: u64,
     aimed: &[AimedRay],
     found: &[FirstCrossing],
-    report: &mut Report,
-) -> Result<()> {
+) -> Result<Report> {
+    let mut report = Report::default();
     let scene = scene_of(target)?;
     let judge = Judge::new(&target.volume, &scene)?;
     let judged: Vec<(Tally, Option<String>)> = aimed
@@ -169,7 +193,7 @@ fn judge(
             report.wrong.extend(told);
         }
     }
-    Ok(())
+    Ok(report)
 }
 
 fn judge_one(

@@ -1,7 +1,7 @@
 //! Scharsach 2005, Table 1: an isosurface made faster by skipping and by large steps with
 //! refinement, which the table mixes and this separates.
 
-use super::super::ways::{self, Errors, Found, Subject, Way, plain_steps, run_group, unskipped};
+use super::super::ways::{self, Errors, Found, TestVolume, Way, plain_steps, run_group, unskipped};
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::scene::{Refine, SamplingMethod};
@@ -21,8 +21,8 @@ pub const EXPERIMENT: Experiment = Experiment {
 const PAPER: [[f64; 3]; 3] = [[14.6, 41.7, 350.0], [4.4, 24.3, 66.4], [1.5, 5.1, 15.1]];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Surface));
-    for subject in Subject::in_three_sizes(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Surface);
+    for subject in TestVolume::in_three_sizes(bench, PhantomKind::Vessels) {
         let paper = PAPER[subject.size];
         let found = run_group(bench, &mut outcome, &subject, "iso", |specimen| {
             list(bench, specimen, paper)
@@ -65,10 +65,7 @@ fn list(bench: &Bench, specimen: &Specimen, paper: [f64; 3]) -> Result<Vec<Way>>
 
 fn tell(volume: &str, found: &[Found]) -> Vec<String> {
     let speedups: Vec<(f64, Option<f64>)> = ways::speedups(found).collect();
-    let share = |place: usize| {
-        let surface: Option<_> = found[place].surface;
-        100.0 * surface.and_then(|s| s.missed_share).unwrap_or(0.0)
-    };
+    let share = |place: usize| ways::percent_missed(&found[place]);
     let mut told = vec![format!(
         "{volume}: skipping alone is {:.1} times as fast as none (paper {:.1}), the picture the same",
         speedups[1].0,
@@ -76,7 +73,7 @@ fn tell(volume: &str, found: &[Found]) -> Vec<String> {
     )];
     told.push(format!(
         "{volume}: step 5 with refinement is {:.2} times as fast as skipping alone (paper {:.1}), \
-         but misses {:.2} % of the hits, where step 1 misses {:.2} %; exact casting misses {:.2} % \
+         but misses {} of the hits, where step 1 misses {}; exact casting misses {} \
          at {:.2} times step 5's time",
         found[1].times.over(&found[4].times),
         speedups[4]

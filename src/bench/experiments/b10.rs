@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::ways::Subject;
+use super::super::ways::TestVolume;
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::Wanted;
-use crate::measure::{Times, interleaved};
+use crate::measure::Times;
 use crate::report::{Cell, Shown, Table};
 use crate::scene::{Picture, Scene, Traverse};
 use crate::volume::PhantomKind;
@@ -26,10 +26,13 @@ pub const EXPERIMENT: Experiment = Experiment {
 const PAPER_MS: [f64; 2] = [6.5, 3.5];
 const PAPER_VOXELS: f64 = 512.0 * 512.0 * 512.0;
 
+/// Of the pictures; small, for what is timed happens before the first ray.
+const SIDE_PX: u32 = 32;
+
 /// Shares of the value range at which the surface or the medium begins, one after the other.
 const CHANGES: [f64; 5] = [0.5, 0.4, 0.6, 0.3, 0.7];
 
-const COLUMNS: [(&str, &str, Shown); 9] = [
+const COLUMNS: [(&str, &str, Shown); 10] = [
     ("volume", "volume", Shown::Short),
     ("change", "what changes", Shown::Short),
     ("traverse", "traversal", Shown::Short),
@@ -41,7 +44,8 @@ const COLUMNS: [(&str, &str, Shown); 9] = [
         Shown::Fixed(1),
     ),
     ("paper_ns_per_kvoxel", "paper", Shown::Fixed(1)),
-    ("uploaded_bytes", "bytes uploaded", Shown::Fixed(0)),
+    ("first_bytes", "bytes with the first frame", Shown::Fixed(0)),
+    ("uploaded_bytes", "with a change", Shown::Fixed(0)),
     ("volume_bytes", "bytes of the volume", Shown::Fixed(0)),
 ];
 
@@ -51,6 +55,8 @@ struct Changed {
     what: String,
     traverse: String,
     times: Times,
+    /// With the volume's first frame, and with it the volume.
+    first_bytes: u64,
     /// The most of any change.
     uploaded_bytes: u64,
     volume_bytes: u64,
@@ -59,7 +65,9 @@ struct Changed {
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    outcome.conduct.side_px = Some(SIDE_PX);
+    outcome.conduct.repeats = Some(repeats(bench));
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let changes = bench.unit(&subject.name, || measure(bench, subject.specimen()?))?;
         for changed in &changes {
             let per_kvoxel = 1e9 / changed.voxels;
@@ -71,6 +79,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 changed.times.median_ms().into(),
                 (changed.times.median_ms() * per_kvoxel).into(),
                 (PAPER_MS[0] * 1e9 / PAPER_VOXELS).into(),
+                changed.first_bytes.into(),
                 changed.uploaded_bytes.into(),
                 Cell::from(changed.volume_bytes),
             ]);
@@ -103,40 +112,38 @@ fn run(bench: &Bench) -> Result<Outcome> {
     Ok(outcome)
 }
 
+/// How often a change is made: each of [`CHANGES`] so many times as the effort says.
+fn repeats(bench: &Bench) -> usize {
+    CHANGES.len() * bench.effort.repeats()
+}
+
 fn measure(bench: &Bench, specimen: &Specimen) -> Result<Vec<Changed>> {
     let octree = bench.octree(specimen)?;
     let mut renderer = bench.renderer(specimen, &octree)?;
-    // Small: what is timed happens before the first ray.
-    let side_px = 32;
+    // The volume goes to the device with the first frame.
+    let mut first_bytes = None;
     let mut all = Vec::new();
     for what in ["iso value", "transfer function"] {
         for traverse in [Traverse::Hierarchical, Traverse::Distance] {
             let scenes: Vec<Scene> = CHANGES
                 .iter()
-                .map(|&share| changed(specimen, side_px, what, share, traverse))
+                .map(|&share| changed(specimen, SIDE_PX, what, share, traverse))
                 .collect::<Result<_>>()?;
-            // The volume's own upload is the first frame's.
-            renderer.render(&scenes[0], Wanted::default())?;
+            let first = renderer.render(&scenes[0], Wanted::default())?;
+            let first_bytes = *first_bytes.get_or_insert(first.uploaded_bytes);
             let mut uploaded_bytes = 0;
-            let rounds = interleaved(&[()], CHANGES.len() * bench.effort.repeats(), {
-                let mut scenes = scenes.iter().cycle();
-                let renderer = &mut renderer;
-                let uploaded_bytes = &mut uploaded_bytes;
-                move |()| {
-                    // A cycle of some scenes has no end.
-                    let Some(scene) = scenes.next() else {
-                        return Ok(f64::NAN);
-                    };
-                    let rendering = renderer.render(scene, Wanted::default())?;
-                    *uploaded_bytes = rendering.uploaded_bytes.max(*uploaded_bytes);
-                    Ok(rendering.classify_ms)
-                }
+            let rounds = bench.times_of(&[()], repeats(bench), |(), round| {
+                let scene = &scenes[round % scenes.len()];
+                let rendering = renderer.render(scene, Wanted::default())?;
+                uploaded_bytes = rendering.uploaded_bytes.max(uploaded_bytes);
+                Ok(rendering.classify_ms)
             })?;
             for times in rounds {
                 all.push(Changed {
                     what: what.into(),
                     traverse: traverse.to_string(),
                     times,
+                    first_bytes,
                     uploaded_bytes,
                     volume_bytes: specimen.volume.voxels().bytes().len() as u64,
                     voxels: specimen.volume.voxels().len() as f64,

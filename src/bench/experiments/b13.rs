@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::ways::{self, Errors, Found, Subject, Way, run_group};
+use super::super::ways::{self, Errors, Found, TestVolume, Way, run_group};
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::scene::{ClipPlane, Scene};
@@ -24,8 +24,10 @@ const PLANES: [usize; 9] = [0, 1, 2, 4, 6, 8, 16, 32, 64];
 const PAPER: [(usize, f64); 2] = [(0, 59.4), (6, 57.9)];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("series", Errors::Light));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "series", Errors::Light);
+    // Every row of the series of sizes says its own.
+    outcome.conduct.side_px = None;
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let planes = run_group(bench, &mut outcome, &subject, "planes", |specimen| {
             by_planes(bench, specimen)
         })?;
@@ -54,7 +56,10 @@ fn by_planes(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
             ..scene.clone()
         };
         let way = Way::new(format!("planes: {count}"), scene);
-        Ok(way.paper_fps(of_paper.map(|(_, fps)| *fps)).same_as(0))
+        Ok(Way {
+            same_as: (count > 0).then_some(0),
+            ..way.paper_fps(of_paper.map(|(_, fps)| *fps))
+        })
     });
     ways.collect()
 }

@@ -1,9 +1,9 @@
 //! Lesar et al. 2015, Table I: effects on and off, the camera still and moving.
 
-use super::super::ways::{self, Found, Subject, Way, measure, plain_steps};
-use super::super::{Bench, Experiment, Outcome, Protocol, Specimen};
+use super::super::ways::{self, Found, SurfaceFound, TestVolume, Way, measure, plain_steps};
+use super::super::{Bench, Conduct, Experiment, Outcome, Protocol, Specimen};
 use crate::error::Result;
-use crate::report::{Shown, Table};
+use crate::report::{Point, Scatter, Section, Shown, Table};
 use crate::scene::{Phong, Picture, Refine, Traverse};
 use crate::volume::PhantomKind;
 
@@ -25,7 +25,7 @@ const PAPER: [(&str, [[f64; 2]; 2]); 4] = [
     ("cheaper filter", [[16.75, 16.04], [15.93, 14.74]]),
 ];
 
-const COLUMNS: [(&str, &str, Shown); 10] = [
+const COLUMNS: [(&str, &str, Shown); 15] = [
     ("volume", "volume", Shown::Short),
     ("protocol", "protocol", Shown::Short),
     ("effect", "effect", Shown::Short),
@@ -36,6 +36,11 @@ const COLUMNS: [(&str, &str, Shown); 10] = [
     ("paper_fps_on", "paper fps, on", Shown::Fixed(2)),
     ("paper_fps_off", "paper fps, off", Shown::Fixed(2)),
     ("paper_speedup", "paper ×", Shown::Fixed(3)),
+    ("missed_share", "missed hits, %", Shown::Percent(3)),
+    ("extra_share", "extra hits, %", Shown::Percent(3)),
+    ("depth_mean_voxels", "depth mean, voxels", Shown::Short),
+    ("depth_p99_voxels", "depth p99", Shown::Short),
+    ("repeats", "repeats", Shown::Fixed(0)),
 ];
 
 fn run(bench: &Bench) -> Result<Outcome> {
@@ -44,7 +49,17 @@ fn run(bench: &Bench) -> Result<Outcome> {
         None => Protocol::ALL.to_vec(),
     };
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    outcome.conduct = match bench.protocol {
+        Some(_) => Conduct::usual(bench),
+        // The rows say how they were timed.
+        None => Conduct {
+            protocol: None,
+            repeats: None,
+            ..Conduct::usual(bench)
+        },
+    };
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
+        let mut points = Vec::new();
         for &protocol in &protocols {
             let key = format!("{}/{protocol}", subject.name);
             let found = bench.unit(&key, || {
@@ -52,8 +67,19 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 measure(bench, protocol, specimen, &[base(bench, specimen)?])
             })?;
             tabulate(&mut outcome, &subject.name, protocol, &found[0]);
+            points.extend(point(protocol, &found[0]));
             bench.so_far(&outcome)?;
         }
+        outcome.sections.push(Section {
+            title: subject.name.clone(),
+            scatters: vec![Scatter {
+                title: "Time against missed hits".into(),
+                x: ways::axis("time", "ms"),
+                y: ways::axis("missed hits", "%"),
+                points,
+            }],
+            ..Section::default()
+        });
     }
     let names = PAPER.map(|(name, _)| name).join(", ");
     outcome.findings.push(format!(
@@ -63,6 +89,11 @@ fn run(bench: &Bench) -> Result<Outcome> {
     outcome.findings.push(
         "in the paper sparse casting is slower with the camera still (0.90 times as fast) and \
          faster with it moving (1.18 times)"
+            .into(),
+    );
+    outcome.findings.push(
+        "errors are against the reference where the camera is first: under 'orbit' the times are of \
+         the whole turn, the errors of its first place alone"
             .into(),
     );
     let told = protocols.iter().map(|protocol| protocol.told(bench.effort));
@@ -86,8 +117,22 @@ fn base(bench: &Bench, specimen: &Specimen) -> Result<Way> {
     Ok(ways::Way::new("none", scene))
 }
 
+/// Of the page's plot; none where nothing was hit.
+fn point(protocol: Protocol, found: &Found) -> Option<Point> {
+    Some(Point {
+        label: format!("no effects, {protocol}"),
+        group: protocol.to_string(),
+        x: found.times.median_ms(),
+        y: 100.0 * found.surface?.missed_share?,
+        ..Point::default()
+    })
+}
+
 fn tabulate(outcome: &mut Outcome, volume: &str, protocol: Protocol, found: &Found) {
     let times = &found.times;
+    let surface = found.surface;
+    let error = |of: fn(&SurfaceFound) -> Option<f64>| surface.as_ref().and_then(of).into();
+    let nothing = || None::<f64>.into();
     outcome.table.push(vec![
         volume.into(),
         protocol.name().into(),
@@ -96,13 +141,20 @@ fn tabulate(outcome: &mut Outcome, volume: &str, protocol: Protocol, found: &Fou
         times.median_ms().into(),
         times.p95_ms().into(),
         (1e3 / times.median_ms()).into(),
+        nothing(),
+        nothing(),
+        nothing(),
+        error(|surface| surface.missed_share),
+        error(|surface| surface.extra_share),
+        error(|surface| surface.depth_mean),
+        error(|surface| surface.depth_p99),
+        (times.repeats() as u64).into(),
     ]);
     for (effect, fps) in PAPER {
         let [on, off] = match protocol {
             Protocol::Static => fps[0],
             Protocol::Orbit => fps[1],
         };
-        let nothing = || None::<f64>.into();
         outcome.table.push(vec![
             volume.into(),
             protocol.name().into(),

@@ -1,6 +1,6 @@
 //! Lesar et al. 2015, §IV: the octree against marching through everything.
 
-use super::super::ways::{self, Errors, Paper, Subject, Way, plain_steps, run_group, unskipped};
+use super::super::ways::{self, Errors, Paper, TestVolume, Way, plain_steps, run_group, unskipped};
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::scene::{Refine, Traverse};
@@ -20,8 +20,8 @@ pub const EXPERIMENT: Experiment = Experiment {
 const PAPER_SPEEDUP: f64 = 1.2;
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Surface));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Surface);
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let found = run_group(bench, &mut outcome, &subject, "iso", |specimen| {
             list(bench, specimen)
         })?;

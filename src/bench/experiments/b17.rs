@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::ways::{Subject, plain_steps};
-use super::super::{Bench, Experiment, Outcome, Shot, Specimen};
+use super::super::ways::{TestVolume, plain_steps};
+use super::super::{Bench, Experiment, Illustration, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
 use crate::report::{Shown, Table};
@@ -35,7 +35,7 @@ const CLASSES: [&str; 3] = ["hits", "near-misses", "clear misses"];
 
 /// Of one volume.
 #[derive(Serialize, Deserialize)]
-struct Histogram {
+struct IterationCounts {
     /// Pixels by class; bin b counts rays of 2^(b − 1) to 2^b − 1 iterations, bin 0 those of none.
     bins: Vec<[u64; 3]>,
     /// Sums of iterations by class.
@@ -44,10 +44,11 @@ struct Histogram {
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    outcome.conduct.side_px = Some(bench.effort.side_px());
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let specimen = subject.specimen()?;
         let histogram = bench.unit(&subject.name, || {
-            Ok(Histogram::of(&frame(bench, specimen)?))
+            Ok(IterationCounts::of(&frame(bench, specimen)?))
         })?;
         tabulate(&mut outcome, &subject.name, &histogram);
         outcome.findings.push(tell(&subject.name, &histogram));
@@ -74,17 +75,16 @@ fn scene(bench: &Bench, specimen: &Specimen) -> Result<Scene> {
 
 fn frame(bench: &Bench, specimen: &Specimen) -> Result<Frame> {
     let wanted = Wanted {
-        display: true,
         counters: true,
         kind: true,
-        ..Wanted::default()
+        ..Wanted::DISPLAY
     };
     let octree = bench.octree(specimen)?;
     let mut renderer = bench.renderer(specimen, &octree)?;
     Ok(renderer.render(&scene(bench, specimen)?, wanted)?.frame)
 }
 
-impl Histogram {
+impl IterationCounts {
     fn of(frame: &Frame) -> Self {
         let planes = [&frame.nodes, &frame.steps, &frame.kind];
         let [nodes, steps, kinds] = planes.map(|plane| plane.as_deref().unwrap_or_default());
@@ -117,7 +117,7 @@ impl Histogram {
     }
 }
 
-fn tabulate(outcome: &mut Outcome, volume: &str, histogram: &Histogram) {
+fn tabulate(outcome: &mut Outcome, volume: &str, histogram: &IterationCounts) {
     for (bin, counts) in histogram.bins.iter().enumerate() {
         let (from, to) = match bin {
             0 => (0_u64, 0),
@@ -135,7 +135,7 @@ fn tabulate(outcome: &mut Outcome, volume: &str, histogram: &Histogram) {
     }
 }
 
-fn tell(volume: &str, histogram: &Histogram) -> String {
+fn tell(volume: &str, histogram: &IterationCounts) -> String {
     let means = histogram.means();
     let told = CLASSES.iter().zip(means);
     let told = told.filter_map(|(class, mean)| Some(format!("{class} {:.1}", mean?)));
@@ -154,7 +154,7 @@ fn tell(volume: &str, histogram: &Histogram) -> String {
 }
 
 /// The iterations as grey levels: white none, black the most of any ray.
-fn map(volume: &str, mut frame: Frame) -> Shot {
+fn map(volume: &str, mut frame: Frame) -> Illustration {
     let nodes = frame.nodes.take().unwrap_or_default();
     let most = nodes.iter().copied().max().unwrap_or(0);
     let grey = |&nodes: &u32| {
@@ -162,7 +162,7 @@ fn map(volume: &str, mut frame: Frame) -> Shot {
         [level, level, level, 1.0]
     };
     frame.display = Some(nodes.iter().map(grey).collect());
-    Shot {
+    Illustration {
         section: volume.to_owned(),
         label: "iterations".into(),
         caption: format!("traversal iterations a ray, white none, black {most}"),
@@ -190,7 +190,7 @@ mod tests {
             kind: Some(vec![1, 0, 0, 0, 2, 0]),
             certificate: None,
         };
-        let histogram = Histogram::of(&frame);
+        let histogram = IterationCounts::of(&frame);
         // Bins: 0; 1; 2, 3; 4 to 7; 8 to 15.
         let expected = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 1, 1], [1, 0, 0]];
         assert_eq!(histogram.bins, expected);

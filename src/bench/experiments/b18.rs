@@ -1,7 +1,7 @@
 //! Lesar et al. 2015, Figure 5: one volume under several transfer functions.
 
-use super::super::ways::{self, Errors, Subject, Way, run_group};
-use super::super::{Bench, Experiment, Outcome, Shot, Specimen};
+use super::super::ways::{self, Errors, TestVolume, Way, run_group};
+use super::super::{Bench, Experiment, Illustration, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::Wanted;
 use crate::volume::PhantomKind;
@@ -46,8 +46,8 @@ const VARIANTS: [(&str, Knots); 4] = [
 ];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Light));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Light);
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let found = run_group(bench, &mut outcome, &subject, "dvr", |specimen| {
             list(bench, specimen)
         })?;
@@ -90,16 +90,12 @@ fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
     ways.collect()
 }
 
-fn pictures(bench: &Bench, specimen: &Specimen) -> Result<Vec<Shot>> {
+fn pictures(bench: &Bench, specimen: &Specimen) -> Result<Vec<Illustration>> {
     let octree = bench.octree(specimen)?;
     let mut renderer = bench.renderer(specimen, &octree)?;
-    let wanted = Wanted {
-        display: true,
-        ..Wanted::default()
-    };
     let shots = list(bench, specimen)?.into_iter().map(|way| {
-        let frame = renderer.render(&way.scene, wanted)?.frame;
-        Ok(Shot {
+        let frame = renderer.render(&way.scene, Wanted::DISPLAY)?.frame;
+        Ok(Illustration {
             section: format!("{}, dvr", specimen.name),
             label: way.name,
             caption: String::new(),

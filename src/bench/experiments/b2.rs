@@ -1,6 +1,6 @@
 //! Scharsach 2005, Table 2: what shading costs where light is summed along the ray.
 
-use super::super::ways::{self, Errors, Subject, Way, run_group};
+use super::super::ways::{self, Errors, TestVolume, Way, run_group};
 use super::super::{Bench, Experiment, Outcome};
 use crate::error::Result;
 use crate::scene::{Phong, Picture};
@@ -19,8 +19,8 @@ pub const EXPERIMENT: Experiment = Experiment {
 const PAPER: [[f64; 2]; 3] = [[40.5, 26.7], [23.9, 11.3], [4.4, 1.5]];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Light));
-    for subject in Subject::in_three_sizes(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Light);
+    for subject in TestVolume::in_three_sizes(bench, PhantomKind::Vessels) {
         let paper = PAPER[subject.size];
         let found = run_group(bench, &mut outcome, &subject, "dvr", |specimen| {
             let plain = specimen.emission(bench.effort.side_px())?;

@@ -1,6 +1,6 @@
 //! Scharsach 2005, Figures 4 and 5; Lesar et al. 2015, Figure 3: refinement on and off.
 
-use super::super::ways::{self, Errors, Found, Subject, Way, plain_steps, run_group};
+use super::super::ways::{self, Errors, Found, TestVolume, Way, plain_steps, run_group};
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::scene::{Refine, SamplingMethod};
@@ -22,8 +22,8 @@ const REFINERS: [&str; 3] = ["none", "bisection:6", "regula-falsi:5"];
 const PAPER: [(f64, &str, f64); 2] = [(1.0, "none", 24.3), (5.0, "bisection:6", 66.4)];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Surface));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Surface);
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         let found = run_group(bench, &mut outcome, &subject, "iso", |specimen| {
             list(bench, specimen)
         })?;
@@ -52,13 +52,16 @@ fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
 
 fn tell(volume: &str, found: &[Found]) -> String {
     let of = |place: usize| found[place].surface;
-    let mean = |place: usize| of(place).and_then(|s| s.depth_mean).unwrap_or(0.0);
-    let missed = |place: usize| 100.0 * of(place).and_then(|s| s.missed_share).unwrap_or(0.0);
+    let mean = |place: usize| match of(place).and_then(|s| s.depth_mean) {
+        Some(mean) => format!("{mean:.3}"),
+        None => "none (no hits)".into(),
+    };
+    let missed = |place: usize| ways::percent_missed(&found[place]);
     format!(
-        "{volume}: six bisections bring the mean depth error from {:.3} to {:.3} voxels at step 5, \
-         from {:.3} to {:.3} at step 1; what is left is of rays that stepped over a surface and met \
-         another behind it. They bring no hit back: {:.2} % are missed at step 5 and {:.2} % at step \
-         1, refined or not; 'no visible difference' at step 5 holds where nothing thin is missed",
+        "{volume}: six bisections bring the mean depth error from {} to {} voxels at step 5, \
+         from {} to {} at step 1; what is left is of rays that stepped over a surface and met \
+         another behind it. They bring no hit back: {} are missed at step 5 and {} at step 1, \
+         refined or not; 'no visible difference' at step 5 holds where nothing thin is missed",
         mean(3),
         mean(4),
         mean(0),

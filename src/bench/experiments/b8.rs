@@ -1,6 +1,6 @@
 //! Ruijters and Vilanova 2006, Figure 6: the smallest node of the octree.
 
-use super::super::ways::{self, Errors, Subject, Way, run_group};
+use super::super::ways::{self, Errors, TestVolume, Way, run_group};
 use super::super::{Bench, Effort, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::octree::Leaf;
@@ -31,8 +31,8 @@ const TRAVERSE: Traverse = Traverse::KdRestart;
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let edges = edges(bench.effort);
-    let mut outcome = Outcome::of(ways::table("traversal", Errors::Light));
-    for subject in Subject::in_one_size(bench, PhantomKind::Vessels) {
+    let mut outcome = ways::outcome(bench, "traversal", Errors::Light);
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
         for traverse in [TRAVERSE, Traverse::Distance] {
             let case = traverse.to_string();
             let found = run_group(bench, &mut outcome, &subject, &case, |specimen| {
@@ -60,11 +60,11 @@ fn run(bench: &Bench) -> Result<Outcome> {
 fn list(bench: &Bench, specimen: &Specimen, traverse: Traverse, edges: &[u32]) -> Result<Vec<Way>> {
     let mut scene: Scene = specimen.emission(bench.effort.side_px())?;
     scene.sampling.traverse = traverse;
-    let ways = edges.iter().map(|&edge| {
-        let way = Way::new(format!("leaf {edge}"), scene.clone());
+    let ways = edges.iter().enumerate().map(|(place, &edge)| {
         Ok(Way {
             leaf: Leaf::new(edge)?,
-            ..way.same_as(0)
+            same_as: (place > 0).then_some(0),
+            ..Way::new(format!("leaf {edge}"), scene.clone())
         })
     });
     ways.collect()

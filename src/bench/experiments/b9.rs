@@ -1,6 +1,10 @@
 //! Ruijters and Vilanova 2006, §8: rays that end early in a volume where nothing is empty.
+//!
+//! The paper's third figure, 16.1 fps, is of ending whole bricks before their rays are cast. No brick
+//! is drawn on its own here, so that the figure has no twin; what the octree costs or saves where it
+//! finds nothing empty stands in its place.
 
-use super::super::ways::{self, Errors, Found, Subject, Way, run_group, unskipped};
+use super::super::ways::{self, Errors, Found, TestVolume, Way, run_group, unskipped};
 use super::super::{Bench, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::scene::{Picture, Scene};
@@ -8,24 +12,24 @@ use crate::volume::PhantomKind;
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "b9",
-    about: "early ray termination in a filled volume: none, alone, with the octree (Ruijters and \
-            Vilanova 2006, section 8)",
+    about: "early ray termination where nothing is transparent: none, alone, with the octree \
+            (Ruijters and Vilanova 2006, section 8)",
     takes_volumes: true,
     counts_rays: false,
     times_frames: true,
     run,
 };
 
-/// fps: none, early termination, early termination and octree.
-const PAPER: [f64; 3] = [2.2, 5.2, 16.1];
+/// fps: none, early termination for each ray.
+const PAPER: [f64; 2] = [2.2, 5.2];
 /// The opacity at which a ray ends.
 const TERMINATION: f64 = 0.99;
-/// Share of the value range from which the volume is filled.
-const FILLED_FROM: f64 = 0.05;
+/// Opacity of a voxel's path at the volume's least value and at its greatest.
+const OPACITIES: [f64; 2] = [0.1, 0.5];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let mut outcome = Outcome::of(ways::table("case", Errors::Light));
-    for subject in Subject::in_one_size(bench, PhantomKind::Blob) {
+    let mut outcome = ways::outcome(bench, "case", Errors::Light);
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Blob) {
         let found = run_group(bench, &mut outcome, &subject, "filled", |specimen| {
             list(bench, specimen)
         })?;
@@ -37,7 +41,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 
 fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
     let range = specimen.volume.range();
-    let knots = [(range.at(FILLED_FROM), 0.0), (range.max, 0.5)];
+    let knots = [(range.min, OPACITIES[0]), (range.max, OPACITIES[1])];
     let scene = specimen.medium(bench.effort.side_px(), &knots)?;
     let whole = ending_at(scene.clone(), 1.0);
     let ended = ending_at(scene, TERMINATION);
@@ -45,9 +49,7 @@ fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
     Ok(vec![
         Way::new("to the end", unskipped(whole)).paper_fps(Some(PAPER[0])),
         Way::new(&ended_name, unskipped(ended.clone())).paper_fps(Some(PAPER[1])),
-        Way::new(format!("{ended_name}, octree"), ended)
-            .paper_fps(Some(PAPER[2]))
-            .same_as(1),
+        Way::new(format!("{ended_name}, octree"), ended).same_as(1),
     ])
 }
 
@@ -62,13 +64,13 @@ fn tell(volume: &str, found: &[Found]) -> String {
     let speedups: Vec<f64> = ways::speedups(found).map(|(ours, _)| ours).collect();
     let max = |place: usize| found[place].light.map_or(0.0, |light| light.max);
     format!(
-        "{volume}: ending early is {:.2} times as fast as going to the end (paper {:.1}), the octree \
-         another {:.2} times (paper {:.1}, whose octree ends whole bricks); the largest colour error \
-         goes from {:.4} to {:.4}",
+        "{volume}: ending early is {:.2} times as fast as going to the end (paper {:.1}); with the \
+         octree, which finds nothing to skip, it is {:.2} times as fast as without; the paper's 16.1 \
+         fps, for ending whole bricks, have no twin here; the largest colour error goes from {:.4} to \
+         {:.4}",
         speedups[1],
         PAPER[1] / PAPER[0],
-        speedups[2] / speedups[1],
-        PAPER[2] / PAPER[1],
+        found[1].times.over(&found[2].times),
         max(0),
         max(1)
     )

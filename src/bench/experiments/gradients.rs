@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 
-use super::super::{Bench, Experiment, Outcome, Specimen};
+use super::super::{Bench, Conduct, Experiment, Outcome, Protocol, Specimen};
 use crate::error::Result;
 use crate::frame::error::normal_error;
 use crate::frame::{Frame, Wanted};
-use crate::measure::interleaved;
 use crate::reference;
 use crate::render::Rendering;
 use crate::report::{Cell, Shown, Table};
@@ -54,6 +53,7 @@ fn ways() -> Result<[(&'static str, Gradient); 7]> {
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
+    outcome.conduct = Conduct::usual(bench);
     let sphere = Specimen::phantom(PhantomKind::Sphere)?;
     let named = bench.specimens.iter().map(|specimen| (specimen, None));
     let sphere = (&sphere, Some(radial as fn(DVec3) -> DVec3));
@@ -99,7 +99,7 @@ fn measure(
         .iter()
         .map(|scene| renderer.render(scene, wanted))
         .collect::<Result<_>>()?;
-    let times = interleaved(&scenes, bench.effort.repeats(), |scene| {
+    let times = bench.times_under(Protocol::Static, &scenes, |scene, _| {
         let rendering = renderer.render(scene, wanted)?;
         let passes = rendering.passes.iter();
         let normals = passes.filter(|pass| pass.name == "surface_normal");

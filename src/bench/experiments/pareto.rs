@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::{Bench, Effort, Experiment, Outcome, Specimen};
+use super::super::ways::{TestVolume, axis};
+use super::super::{Bench, Conduct, Effort, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::measure::{
@@ -10,7 +11,7 @@ use crate::measure::{
 };
 use crate::reference;
 use crate::render::Renderer;
-use crate::report::{Axis, Point, Scatter, Section, Shown, Table, figure};
+use crate::report::{Point, Scatter, Section, Shown, Table, figure};
 use crate::scene::{Mode, Scene, Setting};
 use crate::volume::PhantomKind;
 
@@ -35,9 +36,9 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
     ("setting", "setting", Shown::Short),
     ("median_ms", "ms", Shown::Fixed(2)),
     ("min_ms", "least", Shown::Fixed(2)),
-    ("error", "error", Shown::Short),
+    ("error", "error, %", Shown::Percent(4)),
     ("of", "of what", Shown::Short),
-    ("color_rmse", "colour rmse, of 255", Shown::Short),
+    ("color_rmse", "colour rmse, %", Shown::Percent(4)),
     ("samples_per_ray", "samples a ray", Shown::Fixed(1)),
     ("nodes_per_ray", "nodes a ray", Shown::Fixed(1)),
     ("on_front", "on the front", Shown::Short),
@@ -46,7 +47,8 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
 /// What is kept of a setting's picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Wrong {
-    /// In the order of [`Wrongness::of_mode`].
+    /// In the order of [`Wrongness::of_mode`], unscaled; the first of every mode is a share, or a
+    /// colour's of 0 to 1.
     errors: Vec<Option<f64>>,
     samples_per_ray: f64,
     nodes_per_ray: f64,
@@ -64,15 +66,13 @@ struct Placed {
 }
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let phantom;
-    let specimens = if bench.specimens.is_empty() {
-        phantom = [Specimen::phantom(PhantomKind::Vessels)?];
-        &phantom
-    } else {
-        bench.specimens.as_slice()
-    };
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
-    for specimen in specimens {
+    outcome.conduct = Conduct {
+        repeats: Some(PARTS * bench.protocol().frames(bench.effort)),
+        ..Conduct::usual(bench)
+    };
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
+        let specimen = subject.specimen()?;
         let octree = bench.octree(specimen)?;
         let mut renderer = bench.renderer(specimen, &octree)?;
         for mode in MODES {
@@ -137,15 +137,22 @@ fn place(
         })
         .collect();
     for at in 0..Wrongness::of_mode(mode).len() {
+        // What has no error, such as the depth's where nothing is hit, beats nothing.
+        let judged = |one: &Placed| one.wrong.errors[at].is_some_and(f64::is_finite);
         let tradeoffs: Vec<Tradeoff> = placed
             .iter()
-            .map(|one| Tradeoff {
-                time: one.median_ms,
-                error: one.wrong.errors[at].unwrap_or(f64::INFINITY),
+            .filter(|one| judged(one))
+            .filter_map(|one| {
+                Some(Tradeoff {
+                    time: one.median_ms,
+                    error: one.wrong.errors[at]?,
+                })
             })
             .collect();
-        for (one, on_front) in placed.iter_mut().zip(front(&tradeoffs)) {
-            one.on_front.push(on_front);
+        let mut on_front = front(&tradeoffs).into_iter();
+        for one in &mut placed {
+            let is_on_front = judged(one) && on_front.next().unwrap_or(false);
+            one.on_front.push(is_on_front);
         }
     }
     Ok(placed)
@@ -182,7 +189,7 @@ fn wrong(
     let judged = judge(renderer, scene, truth, scale_of(&specimen.volume))?;
     let kinds = Wrongness::of_mode(mode).iter();
     Ok(Wrong {
-        errors: kinds.map(|kind| kind.of(&judged.figures)).collect(),
+        errors: kinds.map(|kind| kind.unscaled(&judged.figures)).collect(),
         samples_per_ray: judged.counts.samples_per_ray(),
         nodes_per_ray: judged.counts.nodes_per_ray(),
     })
@@ -200,7 +207,7 @@ fn tabulate(outcome: &mut Outcome, specimen: &Specimen, mode: Mode, placed: &[Pl
             one.median_ms.into(),
             one.min_ms.into(),
             one.wrong.errors[0].into(),
-            format!("{}, {}", kinds[0].title, kinds[0].unit).into(),
+            kinds[0].title.into(),
             color.and_then(|at| one.wrong.errors[at]).into(),
             one.wrong.samples_per_ray.into(),
             one.wrong.nodes_per_ray.into(),
@@ -223,7 +230,8 @@ fn tabulate(outcome: &mut Outcome, specimen: &Specimen, mode: Mode, placed: &[Pl
     let mut front: Vec<&Placed> = placed.iter().filter(|one| one.on_front[0]).collect();
     front.sort_by(|a, b| a.median_ms.total_cmp(&b.median_ms));
     let front = front.iter().map(|one| {
-        let error = one.wrong.errors[0].map_or("none".into(), figure);
+        let error = one.wrong.errors[0].map(|error| kinds[0].scale * error);
+        let error = error.map_or("none".into(), figure);
         format!(
             "{} ({} ms, {error})",
             one.setting.name(),
@@ -248,21 +256,15 @@ fn scatter(mode: Mode, at: usize, placed: &[Placed]) -> Scatter {
             label: one.setting.name().to_owned(),
             group: one.family.clone(),
             x: one.median_ms,
-            y: one.wrong.errors[at]?,
+            y: kind.scale * one.wrong.errors[at]?,
             on_front: one.on_front[at],
             details: vec![("flags".into(), one.setting.flags())],
         })
     };
     Scatter {
         title: format!("Time against {}", kind.title),
-        x: Axis {
-            label: "passes of a frame".into(),
-            unit: "ms".into(),
-        },
-        y: Axis {
-            label: kind.title.into(),
-            unit: kind.unit.into(),
-        },
+        x: axis("passes of a frame", "ms"),
+        y: axis(kind.title, kind.unit),
         points: placed.iter().filter_map(point).collect(),
     }
 }

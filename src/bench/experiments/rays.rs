@@ -1,8 +1,9 @@
 //! The adversarial test at any length: rays aimed where a cast loses surfaces.
 
-use super::super::aimed::{self, Aim, Tally};
+use super::super::aimed::{self, Aim, Report, Tally};
 use super::super::{Bench, Effort, Experiment, Outcome};
 use crate::error::Result;
+use crate::render::RayCaster;
 use crate::report::{Cell, Shown, Table};
 
 pub const EXPERIMENT: Experiment = Experiment {
@@ -40,7 +41,22 @@ fn count(bench: &Bench) -> u64 {
 }
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let report = aimed::run(bench.device, SEED, count(bench), bench.progress)?;
+    let mut report = Report::default();
+    let mut caster = RayCaster::new(bench.device);
+    bench.progress.begin("aimed rays", count(bench));
+    for (number, rays) in aimed::targets(count(bench)) {
+        let at_target = bench.unit(&format!("target {number}"), || {
+            aimed::at_target(&mut caster, SEED, number, rays)
+        })?;
+        report = report.and(at_target);
+        bench.progress.advance(rays);
+        bench.so_far(&outcome(&report))?;
+    }
+    bench.progress.end();
+    Ok(outcome(&report))
+}
+
+fn outcome(report: &Report) -> Outcome {
     let total = report.total();
     let mut table = Table::new(&COLUMNS);
     let named = Aim::ALL.into_iter().map(Aim::name).zip(report.tallies);
@@ -53,7 +69,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
         total.rays,
         total.borderline
     )];
-    findings.extend(report.wrong);
+    findings.extend(report.wrong.iter().cloned());
     let failure = (total.wrong() > 0).then(|| {
         format!(
             "{} of {} rays were answered wrong",
@@ -61,11 +77,11 @@ fn run(bench: &Bench) -> Result<Outcome> {
             total.rays
         )
     });
-    Ok(Outcome {
+    Outcome {
         findings,
         failure,
         ..Outcome::of(table)
-    })
+    }
 }
 
 fn row(aim: &str, tally: &Tally) -> Vec<Cell> {

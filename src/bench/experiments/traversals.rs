@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::compare::same_picture;
-use super::super::{Bench, Experiment, Outcome, Specimen};
+use super::super::ways::{TestVolume, axis};
+use super::super::{Bench, Conduct, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::{Frame, Wanted};
 use crate::measure::{Counts, Times};
 use crate::render::Renderer;
-use crate::report::{Shown, Table};
+use crate::report::{Point, Scatter, Section, Shown, Table};
 use crate::scene::{SamplingMethod, Scene, Traverse};
 use crate::volume::PhantomKind;
 
@@ -38,17 +39,13 @@ const COLUMNS: [(&str, &str, Shown); 9] = [
 ];
 
 fn run(bench: &Bench) -> Result<Outcome> {
-    let phantom;
-    let specimens = if bench.specimens.is_empty() {
-        phantom = [Specimen::phantom(PhantomKind::Vessels)?];
-        &phantom
-    } else {
-        bench.specimens.as_slice()
-    };
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
+    outcome.conduct = Conduct::usual(bench);
     // Of every picture, the logarithms of its ratios to the rival.
     let mut logs = [0.0; Traverse::ALL.len()];
-    for specimen in specimens {
+    for subject in TestVolume::in_one_size(bench, PhantomKind::Vessels) {
+        let specimen = subject.specimen()?;
+        let mut points = Vec::new();
         let octree = bench.octree(specimen)?;
         let mut renderer = bench.renderer(specimen, &octree)?;
         for (name, scene) in pictures(specimen, bench.effort.side_px())? {
@@ -70,8 +67,20 @@ fn run(bench: &Bench) -> Result<Outcome> {
                     specimen.name
                 ));
             }
+            points.extend(plotted(name, &found));
             bench.so_far(&outcome)?;
         }
+        outcome.sections.push(Section {
+            title: specimen.name.clone(),
+            about: "The pictures are the same whatever the traversal.".into(),
+            scatters: vec![Scatter {
+                title: "Time against nodes visited".into(),
+                x: axis("time", "ms"),
+                y: axis("nodes a ray", ""),
+                points,
+            }],
+            ..Section::default()
+        });
     }
     outcome.findings.push(format!(
         "{} is the fastest of all, by the mean of the ratios",
@@ -150,6 +159,18 @@ fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<
         }
     });
     Ok(found.collect())
+}
+
+/// A picture's traversals as points of a plot.
+fn plotted<'a>(picture: &'a str, found: &'a [Found]) -> impl Iterator<Item = Point> + 'a {
+    let found = Traverse::ALL.iter().zip(found);
+    found.map(move |(traverse, one)| Point {
+        label: format!("{picture}, {traverse}"),
+        group: picture.to_owned(),
+        x: one.times.median_ms(),
+        y: one.nodes_per_ray,
+        ..Point::default()
+    })
 }
 
 /// Appends a picture's rows; gives whether all traversals made the same.

@@ -3,14 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::borderline::Borderline;
-use super::super::{Bench, Experiment, Outcome, Specimen};
+use super::super::ways::axis;
+use super::super::{Bench, Conduct, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
 use crate::frame::{Frame, Wanted};
-use crate::measure::Times;
+use crate::measure::{Times, Tradeoff, front};
 use crate::reference;
 use crate::render::Renderer;
-use crate::report::{Cell, Shown, Table};
+use crate::report::{Cell, Point, Scatter, Section, Shown, Table};
 use crate::scene::options::concise;
 use crate::scene::{Picture, Refine, SamplingMethod, Scene};
 
@@ -129,11 +130,13 @@ fn run(bench: &Bench) -> Result<Outcome> {
     let vessels = RADII.map(|radius| Specimen::straight_vessels(radius, VESSELS));
     let vessels: Vec<Specimen> = vessels.into_iter().collect::<Result<_>>()?;
     let mut outcome = Outcome::of(Table::new(&COLUMNS));
+    outcome.conduct = Conduct::usual(bench);
     let mut costs = Costs::default();
     for specimen in vessels.iter().chain(&bench.specimens) {
         let measured = bench.unit(&specimen.name, || measure(bench, specimen))?;
         let exact = &tabulate(&mut outcome.table, specimen, &measured);
         costs.add(&measured);
+        outcome.sections.push(section(specimen, &measured));
         outcome.findings.push(format!(
             "{}: {} rays hit at {}; {} are not judged, for 1e-4 voxel beside them the reference meets something else",
             specimen.name,
@@ -200,6 +203,64 @@ fn tabulate(table: &mut Table, specimen: &Specimen, measured: &Measured) -> Dept
         ]);
     }
     measured.iso[settings.len() - 1].0
+}
+
+/// A volume's part of the page: time against what is missed of its surface and of its maxima.
+fn section(specimen: &Specimen, measured: &Measured) -> Section {
+    let missed = measured.iso.iter().zip(Setting::all());
+    let missed = missed.filter_map(|((depth, times), setting)| {
+        let share = depth.missed_share()?;
+        Some((setting.name(), setting.refiner.to_owned(), times, share))
+    });
+    let lost = measured.mip.iter().zip(Method::all());
+    let lost = lost.filter_map(|((value, times), method)| {
+        let setting = Setting {
+            method,
+            refiner: "unrefined",
+        };
+        Some((setting.name(), "maximum".to_owned(), times, value.mean?))
+    });
+    Section {
+        title: specimen.name.clone(),
+        scatters: vec![
+            scatter("Surface: time against hits missed", "missed hits", missed),
+            scatter(
+                "Maximum: time against error",
+                "mean error of the value",
+                lost,
+            ),
+        ],
+        ..Section::default()
+    }
+}
+
+/// Of names, families, times and shares.
+fn scatter<'a>(
+    title: &str,
+    error: &str,
+    settings: impl Iterator<Item = (String, String, &'a Times, f64)>,
+) -> Scatter {
+    let settings: Vec<_> = settings.collect();
+    let tradeoff = |(_, _, times, share): &(_, _, &Times, f64)| Tradeoff {
+        time: times.median_ms(),
+        error: *share,
+    };
+    let on_front = front(&settings.iter().map(tradeoff).collect::<Vec<_>>());
+    let points = settings.into_iter().zip(on_front);
+    let points = points.map(|((label, group, times, share), on_front)| Point {
+        label,
+        group,
+        x: times.median_ms(),
+        y: 100.0 * share,
+        on_front,
+        ..Point::default()
+    });
+    Scatter {
+        title: title.into(),
+        x: axis("time", "ms"),
+        y: axis(error, "%"),
+        points: points.collect(),
+    }
 }
 
 /// Where a method or setting is in its list, all of which hold those that are looked for.

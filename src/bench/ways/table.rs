@@ -1,0 +1,223 @@
+//! The table of ways beside their papers.
+
+use crate::bench::{Bench, Conduct, Outcome};
+use crate::report::{Cell, Shown, Table};
+
+use super::Found;
+
+/// Which errors a table shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Errors {
+    Surface,
+    Light,
+}
+
+/// Of ways beside their papers, its table empty.
+pub fn outcome(bench: &Bench, case: &'static str, errors: Errors) -> Outcome {
+    Outcome {
+        conduct: Conduct::usual(bench),
+        ..Outcome::of(table(case, errors))
+    }
+}
+
+/// A table of ways beside their papers.
+fn table(case: &'static str, errors: Errors) -> Table {
+    let mut columns = vec![
+        ("volume", "volume", Shown::Short),
+        ("case", case, Shown::Short),
+        ("way", "way", Shown::Short),
+        ("min_ms", "ms, least", Shown::Fixed(2)),
+        ("median_ms", "median", Shown::Fixed(2)),
+        ("p95_ms", "p95", Shown::Fixed(2)),
+        ("fps", "fps", Shown::Fixed(1)),
+        ("speedup", "ours ×", Shown::Fixed(2)),
+        ("paper_fps", "paper fps", Shown::Fixed(2)),
+        ("paper_speedup", "paper ×", Shown::Fixed(2)),
+    ];
+    columns.extend(match errors {
+        Errors::Surface => [
+            ("missed_share", "missed hits, %", Shown::Percent(3)),
+            ("extra_share", "extra hits, %", Shown::Percent(3)),
+            ("depth_mean_voxels", "depth mean, voxels", Shown::Short),
+            ("depth_p99_voxels", "depth p99", Shown::Short),
+            ("depth_max_voxels", "depth max", Shown::Short),
+        ]
+        .as_slice(),
+        Errors::Light => [
+            ("rmse", "colour rmse", Shown::Short),
+            ("max", "colour max", Shown::Short),
+            ("ssim", "ssim", Shown::Fixed(4)),
+            ("flip", "flip", Shown::Fixed(4)),
+        ]
+        .as_slice(),
+    });
+    columns.extend([
+        ("samples_per_ray", "samples a ray", Shown::Fixed(1)),
+        ("nodes_per_ray", "nodes a ray", Shown::Fixed(1)),
+        ("same_bytes", "same bytes", Shown::Short),
+    ]);
+    Table::new(&columns)
+}
+
+/// How many times as fast as the first of a group each is here, and in the paper.
+pub fn speedups(group: &[Found]) -> impl Iterator<Item = (f64, Option<f64>)> {
+    group.iter().map(|found| {
+        let in_fps = found.paper.fps.zip(group[0].paper.fps);
+        let paper = in_fps.map(|(own, first)| own / first);
+        (
+            group[0].times.over(&found.times),
+            paper.or(found.paper.speedup),
+        )
+    })
+}
+
+/// The share of the hits that a way misses, for a sentence.
+pub fn percent_missed(found: &Found) -> String {
+    match found.surface.and_then(|surface| surface.missed_share) {
+        Some(share) => format!("{:.2} %", 100.0 * share),
+        None => "none (there are no hits)".into(),
+    }
+}
+
+/// Appends a group's rows; a picture that is not the one that it must be is the outcome's failure.
+pub fn tabulate(outcome: &mut Outcome, volume: &str, case: &str, group: &[Found]) {
+    for (found, (ours, paper)) in group.iter().zip(speedups(group)) {
+        let times = &found.times;
+        let mut row: Vec<Cell> = vec![
+            volume.into(),
+            case.into(),
+            found.name.as_str().into(),
+            times.min_ms().into(),
+            times.median_ms().into(),
+            times.p95_ms().into(),
+            (1e3 / times.median_ms()).into(),
+            ours.into(),
+            found.paper.fps.into(),
+            paper.into(),
+        ];
+        if let Some(surface) = &found.surface {
+            row.extend([
+                surface.missed_share.into(),
+                surface.extra_share.into(),
+                surface.depth_mean.into(),
+                surface.depth_p99.into(),
+                surface.depth_max.into(),
+            ]);
+        }
+        if let Some(light) = &found.light {
+            row.extend([
+                light.rmse.into(),
+                light.max.into(),
+                light.ssim.into(),
+                light.flip.into(),
+            ]);
+        }
+        row.extend([
+            found.samples.into(),
+            found.nodes.into(),
+            Cell::from(found.same.map(|same| if same { "yes" } else { "no" })),
+        ]);
+        outcome.table.push(row);
+        if found.same == Some(false) {
+            outcome.failure = Some(format!(
+                "{volume}, {case}: '{}' gives another picture",
+                found.name
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::found::LightFound;
+    use super::super::{Paper, SurfaceFound};
+    use super::*;
+
+    /// A way of so many ms a frame.
+    fn found(name: &str, ms: f64, paper: Paper, same: Option<bool>) -> Found {
+        Found {
+            name: name.into(),
+            paper,
+            times: [ms, ms, ms].into_iter().collect(),
+            samples: 3.0,
+            nodes: 2.0,
+            same,
+            surface: None,
+            light: Some(LightFound {
+                rmse: 0.01,
+                max: 0.02,
+                ssim: None,
+                flip: None,
+            }),
+        }
+    }
+
+    fn fps(fps: f64) -> Paper {
+        Paper {
+            fps: Some(fps),
+            speedup: None,
+        }
+    }
+
+    fn told(group: &[Found]) -> Outcome {
+        let mut outcome = Outcome::of(table("case", Errors::Light));
+        tabulate(&mut outcome, "tree", "dvr", group);
+        outcome
+    }
+
+    #[test]
+    fn ways_are_compared_with_the_first_and_with_their_papers() {
+        let faster = Paper {
+            fps: None,
+            speedup: Some(1.2),
+        };
+        let group = [
+            found("first", 6.0, fps(10.0), None),
+            found("second", 2.0, fps(25.0), Some(true)),
+            found("third", 3.0, faster, Some(true)),
+            found("own", 12.0, Paper::default(), None),
+        ];
+        let expected = [
+            (1.0, Some(1.0)),
+            (3.0, Some(2.5)),
+            (2.0, Some(1.2)),
+            (0.5, None),
+        ];
+        assert_eq!(speedups(&group).collect::<Vec<_>>(), expected);
+        let outcome = told(&group);
+        assert_eq!(outcome.failure, None);
+        let rows = outcome.table.json();
+        assert_eq!(rows[1]["median_ms"], 2.0);
+        assert_eq!(rows[1]["fps"], 500.0);
+        assert_eq!(rows[1]["rmse"], 0.01);
+        assert_eq!(rows[1]["same_bytes"], "yes");
+        assert_eq!(rows[3]["same_bytes"], serde_json::Value::Null);
+    }
+
+    #[test]
+    fn a_picture_that_is_another_is_the_failure() {
+        let group = [
+            found("first", 6.0, Paper::default(), None),
+            found("second", 2.0, Paper::default(), Some(false)),
+            found("third", 2.0, Paper::default(), Some(true)),
+        ];
+        let outcome = told(&group);
+        let failure = outcome.failure.as_deref();
+        assert_eq!(failure, Some("tree, dvr: 'second' gives another picture"));
+        assert_eq!(outcome.table.json()[1]["same_bytes"], "no");
+    }
+
+    #[test]
+    fn where_nothing_is_hit_no_share_is_missed() {
+        let mut one = found("first", 6.0, Paper::default(), None);
+        assert_eq!(percent_missed(&one), "none (there are no hits)");
+        one.surface = Some(SurfaceFound {
+            missed_share: Some(0.125),
+            extra_share: None,
+            depth_mean: None,
+            depth_p99: None,
+            depth_max: None,
+        });
+        assert_eq!(percent_missed(&one), "12.50 %");
+    }
+}

@@ -1,0 +1,86 @@
+//! One way to make a picture.
+
+use serde::{Deserialize, Serialize};
+
+use crate::octree::Leaf;
+use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene};
+
+/// A way to make a picture.
+pub struct Way {
+    pub name: String,
+    pub scene: Scene,
+    pub leaf: Leaf,
+    pub paper: Paper,
+    /// The way, by its place in the list, whose picture this one's must be to the last bit.
+    pub same_as: Option<usize>,
+}
+
+/// What the paper measured, on its machine; the first way's figure is what its ratios are to.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Paper {
+    pub fps: Option<f64>,
+    /// Where the paper gives no frames per second: how many times as fast as the first way.
+    pub speedup: Option<f64>,
+}
+
+impl Way {
+    pub fn new(name: impl Into<String>, scene: Scene) -> Self {
+        Self {
+            name: name.into(),
+            scene,
+            leaf: Leaf::default(),
+            paper: Paper::default(),
+            same_as: None,
+        }
+    }
+
+    #[must_use]
+    pub fn paper_fps(mut self, fps: Option<f64>) -> Self {
+        self.paper.fps = fps;
+        self
+    }
+
+    #[must_use]
+    pub fn same_as(mut self, place: usize) -> Self {
+        self.same_as = Some(place);
+        self
+    }
+
+    /// What is seen, whatever the way in which it is made: what the reference shows.
+    pub(super) fn truth_scene(&self) -> Scene {
+        let mut scene = self.scene.clone();
+        scene.sampling = Sampling {
+            filter: scene.sampling.filter,
+            ..Sampling::default()
+        };
+        match &mut scene.picture {
+            Picture::Surface { refine, .. } => *refine = Refine::default(),
+            Picture::Emission(medium) => {
+                *medium = Emission {
+                    phong: medium.phong,
+                    ..Emission::of(medium.transfer.clone())
+                }
+            }
+            Picture::Projection { .. } => {}
+        }
+        scene
+    }
+}
+
+/// A surface's rays at fixed steps as in the papers: nothing is looked for between two samples.
+pub fn plain_steps(scene: &Scene, step_voxels: f64, refine: Refine) -> Scene {
+    let mut scene = scene.clone();
+    scene.sampling.method = SamplingMethod::Fixed;
+    scene.sampling.step_voxels = step_voxels;
+    scene.sampling.probe = false;
+    if let Picture::Surface { refine: of, .. } = &mut scene.picture {
+        *of = refine;
+    }
+    scene
+}
+
+/// The same scene without skipping.
+pub fn unskipped(mut scene: Scene) -> Scene {
+    scene.sampling.skip = false;
+    scene
+}

@@ -22,17 +22,19 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         assert!(flags.contains(&"scene".to_owned()), "{name}: {flags:?}");
         flags
     };
-    let mut keys: Vec<String> = ["render", "orbit", "bench", "info", "phantom", "devices"]
-        .into_iter()
-        .flat_map(command)
-        .filter(|flag| flag != "scene")
-        .collect();
+    let mut keys: Vec<String> = [
+        "render", "orbit", "compare", "bench", "info", "phantom", "devices",
+    ]
+    .into_iter()
+    .flat_map(command)
+    .filter(|flag| flag != "scene")
+    .collect();
     assert!(keys.len() > 40, "{keys:?}");
     keys.extend(["volume", "kind", "experiment", "volumes"].map(str::to_owned));
     for key in keys {
         // Of a wrong type for every key: accepted as a key, refused as a value by its command.
         place.write("keys.toml", &format!("\n{key} = {{ a = 1 }}\n"));
-        let refusals: Vec<String> = ["render", "orbit", "bench", "info", "phantom"]
+        let refusals: Vec<String> = ["render", "orbit", "compare", "bench", "info", "phantom"]
             .into_iter()
             .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
             .collect();
@@ -44,11 +46,50 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
     // The controls: keys that no command has.
     for key in ["scene", "help", "phantom", "sparse"] {
         place.write("keys.toml", &format!("\n{key} = 1\n"));
-        for command in ["render", "orbit", "bench", "info", "phantom", "devices"] {
+        for command in [
+            "render", "orbit", "compare", "bench", "info", "phantom", "devices",
+        ] {
             let said = place.refused(&format!("{command} --scene keys.toml"), 2);
             assert!(said.starts_with("error: keys.toml:2: "), "{said}");
         }
     }
+}
+
+#[test]
+fn an_unknown_key_is_told_the_nearest_one() {
+    let place = Place::empty();
+    for (key, hint) in [
+        ("repeat", "hint: did you mean 'repeats'?"),
+        ("max_error", "hint: write 'max-error'"),
+        ("qqq", "hint: the options are "),
+    ] {
+        place.write("keys.toml", &format!("{key} = 1\n"));
+        let said = place.refused("compare --scene keys.toml", 2);
+        let error = format!("error: keys.toml:1: '{key}' is no option of a scene");
+        assert!(said.contains(&error) && said.contains(hint), "{said}");
+    }
+}
+
+#[test]
+fn what_is_no_whole_number_is_refused_in_words() {
+    let place = Place::empty();
+    for (wrong, told) in [
+        ("1.5", "'1.5' is not a whole number from 0 on"),
+        ("-1", "'-1' is not a whole number from 0 on"),
+        (
+            "99999999999999999999",
+            "'99999999999999999999' is too large a number",
+        ),
+    ] {
+        let said = place.refused(&format!("phantom noise -o n.nrrd --seed {wrong}"), 2);
+        assert!(said.contains(told), "{said}");
+    }
+    place.write("seed.toml", "seed = 2.5\n");
+    let said = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);
+    assert!(
+        said.contains("'2.5' is not a whole number from 0 on"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn a_bar_shows_the_colours_of_the_map() {
     for (position, color) in &stops {
         assert_eq!(*color, cool_warm(2.0 * position - 1.0));
     }
-    // Between stops a browser interpolates in sRGB: within 2.5 levels of the map's colours.
+    // Between stops a browser interpolates in sRGB: within 2 levels of the map's colours.
     for pair in stops.windows(2) {
         let [a, b] = [pair[0].1, pair[1].1].map(|color| color.map(f64::from));
         let middle = cool_warm(pair[0].0 + pair[1].0 - 1.0);

@@ -64,9 +64,24 @@ impl Seen {
     }
 }
 
+/// On a desk, and in a hand: width and height of the window.
+const DESK: (u32, u32) = (1200, 900);
+const PHONE: (u32, u32) = (390, 844);
+
 /// Opens a page with a script at its end that runs when all is loaded, and gives what became of it.
 /// `value` is the script's result.
 fn open(chromium: &Path, page: &str, value: &str) -> Seen {
+    open_in(chromium, page, value, DESK, &[])
+}
+
+/// The same in a window of a size, with more flags of Chromium's.
+fn open_in(
+    chromium: &Path,
+    page: &str,
+    value: &str,
+    (width, height): (u32, u32),
+    flags: &[&str],
+) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let probe = format!(
@@ -89,10 +104,11 @@ fn open(chromium: &Path, page: &str, value: &str) -> Seen {
             "--disable-dev-shm-usage",
             "--enable-logging=stderr",
             "--v=0",
-            "--window-size=1200,900",
             "--virtual-time-budget=3000",
             "--dump-dom",
         ])
+        .args(flags)
+        .arg(format!("--window-size={width},{height}"))
         .arg(format!("--user-data-dir={}", at("profile").display()))
         .arg(format!("file://{}", at("page.html").display()))
         .stdin(Stdio::null())
@@ -340,6 +356,107 @@ fn it_reacts() {
         probe["descending"],
         serde_json::json!([HOSTILE, "fast", "none"])
     );
+}
+
+#[test]
+fn it_fits_a_phone() {
+    let Some(chromium) = chromium() else { return };
+    let page = report().html().unwrap();
+    let sizes = "return [innerWidth, document.documentElement.scrollWidth];";
+    let seen = open_in(&chromium, &page, sizes, PHONE, &[]);
+    assert_eq!(seen.faults(), [""; 0]);
+    assert_eq!(seen.probe(), serde_json::json!([390, 390]));
+    // The control: something too wide.
+    let wide = page.replace("<main>", "<main><div style='width:500px'></div>");
+    let seen = open_in(&chromium, &wide, sizes, PHONE, &[]);
+    assert_ne!(seen.probe()[1], 390);
+}
+
+#[test]
+fn it_is_dark_where_the_reader_s_screen_is() {
+    let Some(chromium) = chromium() else { return };
+    let page = report().html().unwrap();
+    let ground = "return getComputedStyle(document.body).backgroundColor;";
+    let dark = ["--blink-settings=preferredColorScheme=0"];
+    let seen = open_in(&chromium, &page, ground, DESK, &dark);
+    assert_eq!(seen.faults(), [""; 0]);
+    assert_eq!(seen.probe(), "rgb(15, 18, 22)");
+    let light = ["--blink-settings=preferredColorScheme=1"];
+    let seen = open_in(&chromium, &page, ground, DESK, &light);
+    assert_eq!(seen.probe(), "rgb(246, 247, 249)");
+}
+
+#[test]
+fn every_axis_names_marks_that_stand_apart() {
+    let Some(chromium) = chromium() else { return };
+    // Short stretches from everywhere in a decade, of small and large figures, and long ones.
+    let stretches = (0..20).flat_map(|n| {
+        let low = 10_f64.powf(f64::from(n) / 20.0);
+        [(1e-4, 1.0), (1e-2, 1.4), (1.0, 1.0), (1.0, 3.0), (1e4, 2.0)]
+            .map(|(size, over)| (low * size, low * size * over))
+    });
+    let long = [1e1, 1e2, 1e3, 1e6, 1e15].map(|over| (0.003, 0.003 * over));
+    let scatters = stretches.chain(long).map(|(low, high)| Scatter {
+        title: format!("{low} {high}"),
+        points: vec![
+            point("a", "g", low, low, true),
+            point("b", "g", high, high, false),
+        ],
+        ..Scatter::default()
+    });
+    let page = Report {
+        sections: vec![Section {
+            scatters: scatters.collect(),
+            ..Section::default()
+        }],
+        ..Report::default()
+    };
+    let page = page.html().unwrap();
+    let axes = "return all('.scatter').flatMap((f) => ['middle', 'end'].map((anchor) => {
+        const names = [...f.querySelectorAll(`.tick[text-anchor=${anchor}]`)];
+        const boxes = names.map((n) => n.getBoundingClientRect());
+        const apart = (a, b) => a.right < b.left || b.right < a.left || a.bottom <= b.top || b.bottom <= a.top;
+        return { of: f.querySelector('h3').textContent, anchor, names: names.map((n) => n.textContent),
+          apart: boxes.every((a, n) => boxes.slice(n + 1).every((b) => apart(a, b))),
+          within: boxes.every((a) => a.left >= 0 && a.right <= innerWidth) }; }));";
+    for window in [DESK, PHONE] {
+        let seen = open_in(&chromium, &page, axes, window, &[]);
+        assert_eq!(seen.faults(), [""; 0]);
+        let probe = seen.probe();
+        let axes = probe.as_array().unwrap();
+        assert_eq!(axes.len(), 2 * 105);
+        for axis in axes {
+            let named = axis["names"].as_array().unwrap().len();
+            assert!((2..=12).contains(&named), "{axis}");
+            assert!(axis["apart"] == true && axis["within"] == true, "{axis}");
+        }
+    }
+    // The control: names for all marks do not fit.
+    let crowded = page.replace("ENOUGH_NAMES = 3", "ENOUGH_NAMES = 99");
+    let crowded = crowded.replace("named.some(near)", "false");
+    let seen = open_in(&chromium, &crowded, axes, PHONE, &[]);
+    let probe = seen.probe();
+    assert!(
+        probe
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|axis| axis["apart"] == false)
+    );
+}
+
+#[test]
+fn the_report_that_the_readme_shows_has_no_faults() {
+    let Some(chromium) = chromium() else { return };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/report/report.html");
+    let page = fs::read_to_string(path).unwrap();
+    let parts = "return [all('.scatter .point .hit').length > 0, all('.pane img').length > 0, \
+                 document.documentElement.scrollWidth <= innerWidth];";
+    for window in [DESK, PHONE] {
+        let seen = open_in(&chromium, &page, parts, window, &[]);
+        assert_eq!(seen.faults(), [""; 0]);
+        assert_eq!(seen.probe(), serde_json::json!([true, true, true]));
+    }
 }
 
 /// The checks above can fail.

@@ -3,9 +3,20 @@
 #
 #   scripts/peers/compare.sh VOLUME -o DIR [more options of angioray compare]
 set -euo pipefail
-home="$(cd "$(dirname "$0")/../.." && pwd)"
+here="$(dirname "$0")"
+home="$(cd "$here/../.." && pwd)"
+
+case "${1:---help}" in -h | --help)
+    printf 'usage: scripts/peers/compare.sh VOLUME -o DIR [more options of angioray compare]\n'
+    exit 0
+    ;;
+esac
 
 "$home/scripts/setup.sh"
 python="$("$home/scripts/peers/setup.sh")"
 cargo build --release --locked --manifest-path "$home/Cargo.toml"
-exec "$home/target/release/angioray" compare "$@" --peer "'$python' '$home/scripts/peers/vtk_peer.py'"
+# The report tells the command: by paths from here, which mean the same on another machine. The
+# virtual environment's Python is a link that must not be followed.
+from_here() { realpath --no-symlinks --relative-to=. "$1"; }
+peer="$(printf '%q %q' "$(from_here "$python")" "$(from_here "$home/scripts/peers/vtk_peer.py")")"
+exec "$home/target/release/angioray" compare "$@" --peer "$peer"

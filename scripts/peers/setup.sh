@@ -7,6 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 VTK=9.7.2
+NUMPY=2.4.6
 venv=target/peers-venv
 python=$venv/bin/python
 
@@ -42,6 +43,6 @@ fi
 if ! "$python" -c "import sys, numpy, vtkmodules.vtkCommonCore as c; sys.exit(c.vtkVersion.GetVTKVersion() != '$VTK')" 2>/dev/null; then
     say "installing VTK $VTK from PyPI into $venv"
     python3 -m venv "$venv"
-    "$venv/bin/pip" install --quiet --disable-pip-version-check "vtk==$VTK" numpy >&2
+    "$venv/bin/pip" install --quiet --disable-pip-version-check "vtk==$VTK" "numpy==$NUMPY" >&2
 fi
 printf '%s\n' "$PWD/$python"

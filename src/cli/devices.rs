@@ -11,6 +11,7 @@ use super::terminal::to_stdout;
 /// What --device takes: the number in front, 'cpu', 'gpu', or part of a name. The double-precision
 /// renderer, --device reference, is always there.
 #[derive(clap::Args)]
+#[command(override_usage = "angioray devices [OPTIONS]")]
 #[command(after_help = "Example:
   angioray devices
   angioray render head.nrrd -o head.png --device 0")]

@@ -22,6 +22,7 @@ const WIDTH: usize = 60;
 
 /// Print what a volume is: geometry, values, a suggested iso value, the size of its octree
 #[derive(clap::Args)]
+#[command(override_usage = "angioray info VOLUME [OPTIONS]")]
 #[command(after_help = "Example:
   angioray info head.nrrd
   angioray info head_256x256x256_u8.raw --raw-size 256x256x256 --raw-type u8 --json")]

@@ -12,6 +12,7 @@ use crate::extent::Dims;
 use crate::output::write_atomically;
 use crate::scene::options::group::{Keys, group};
 use crate::scene::options::plain::readable;
+use crate::scene::options::whole;
 use crate::scene::{FilePath, SpacingMm, Switch};
 use crate::volume::{
     HardCase, PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd,
@@ -33,7 +34,7 @@ const EXAMPLE: &str = "Example:
 /// that branches by Murray's law, whose centrelines and radii go into FILE.tree.json.
 ///
 /// hardcase:NAME makes a volume on which renderers fail, with the scenes that go with it and the
-/// right answer; --help lists them.
+/// right answer (listed below).
 #[derive(clap::Args)]
 #[command(override_usage = "angioray phantom KIND -o FILE.nrrd [OPTIONS]")]
 #[command(after_help = EXAMPLE, after_long_help = format!("{}{EXAMPLE}", hardcase::help() + "\n"))]
@@ -74,7 +75,7 @@ group! {
 
         /// Decides the vessel tree and all noise [default: 1]
         #[arg(long, value_name = "S", allow_hyphen_values = true)]
-        seed: u64,
+        seed: Seed,
 
         /// Standard deviation of noise added to every voxel, as a share of the value range
         /// [default: 0]
@@ -181,7 +182,7 @@ impl PhantomArguments {
             voxel_type: asked
                 .voxel_type
                 .map_or(default.voxel_type, |VoxelName(voxel_type)| voxel_type),
-            seed: asked.seed.unwrap_or(default.seed),
+            seed: asked.seed.map_or(default.seed, |Seed(seed)| seed),
             radius_mm: shape.radius,
             tip_radius_mm: shape.tip_radius,
             thickness_mm: shape.thickness,
@@ -268,7 +269,7 @@ impl TypedValueParser for Kinds {
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let kinds =
             PhantomKind::ALL.map(|kind| PossibleValue::new(kind.name()).help(kind.description()));
-        let hard = PossibleValue::new("hardcase:NAME").help("A hard case: --help lists them.");
+        let hard = PossibleValue::new("hardcase:NAME").help("A hard case (listed below).");
         Some(Box::new(kinds.into_iter().chain([hard])))
     }
 }
@@ -316,6 +317,18 @@ impl FromStr for VoxelName {
     }
 }
 
+/// `--seed`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seed(u64);
+
+impl FromStr for Seed {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        whole(text, 0).map(Self)
+    }
+}
+
 /// `--axis`: of the index space, 0 to 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis(usize);
@@ -331,4 +344,4 @@ impl FromStr for Axis {
     }
 }
 
-readable!(Kind, GridSize, VoxelName, Axis);
+readable!(Kind, GridSize, VoxelName, Seed, Axis);

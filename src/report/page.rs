@@ -154,7 +154,7 @@ fn section_html(n: usize, section: &Section) -> Result<Markup> {
                 div.scatters { @for plot in &section.scatters { (scatter::html(plot)) } }
             }
             @if let Some(bars) = &section.bars { (bars::html(bars)) }
-            @if let Some(table) = &section.table { (table.html(&section.title)) }
+            @if let Some(table) = &section.table { (table.html(&section.title, section.scatters.len())) }
         }
     })
 }

@@ -4,6 +4,7 @@ use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 use super::content::{Axis, Point, Scatter};
+use super::figure::figure;
 
 pub(super) fn html(plot: &Scatter) -> Markup {
     html! {
@@ -34,6 +35,8 @@ fn point(point: &Point) -> Value {
         "group": point.group,
         "x": point.x,
         "y": point.y,
+        "xText": figure(point.x),
+        "yText": figure(point.y),
         "onFront": point.on_front,
         "details": point.details,
     })

@@ -7,6 +7,8 @@ use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::figure::figure;
+
 /// What stands in one place of a table; as JSON a string, a number or `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -53,10 +55,10 @@ impl<T: Into<Self>> From<Option<T>> for Cell {
 pub enum Shown {
     /// With so many digits behind the point.
     Fixed(usize),
-    /// A share, times 100, with so many digits behind the point; one too small for them by its
-    /// power of ten.
+    /// A share, times 100, with so many digits behind the point; one too small for them as a
+    /// [`figure`].
     Percent(usize),
-    /// Plain from a thousandth on, else by its power of ten.
+    /// As a [`figure`].
     Short,
 }
 
@@ -67,17 +69,13 @@ impl Shown {
             Self::Percent(digits) => {
                 let percent = 100.0 * number;
                 let least = 0.5 * 10_f64.powi(-(digits as i32));
-                if percent == 0.0 {
-                    "0".into()
-                } else if percent.abs() < least {
-                    format!("{percent:.0e}")
+                if percent.abs() < least {
+                    figure(percent)
                 } else {
                     format!("{percent:.digits$}")
                 }
             }
-            Self::Short if number == 0.0 => "0".into(),
-            Self::Short if number.abs() < 1e-3 => format!("{number:.0e}"),
-            Self::Short => format!("{number:.3}"),
+            Self::Short => figure(number),
         }
     }
 }
@@ -180,9 +178,14 @@ impl Table {
         named.collect()
     }
 
-    /// For a page, about `what`; rounded like [`Self::markdown`], with the unrounded figures to sort
-    /// by and, as CSV, to take along.
-    pub(super) fn html(&self, what: &str) -> Markup {
+    /// For a page, about `what`, under so many plots with a front; rounded like [`Self::markdown`],
+    /// with the unrounded figures to sort by and, as CSV, to take along.
+    pub(super) fn html(&self, what: &str, plots: usize) -> Markup {
+        let on_front = match plots {
+            0 => "on a Pareto front",
+            1 => "on the Pareto front above",
+            _ => "on a Pareto front above",
+        };
         html! {
             div.table.card {
                 @if self.rows.is_empty() {
@@ -205,7 +208,7 @@ impl Table {
                         }
                     }
                     p.note {
-                        @if !self.on_front.is_empty() { span.front { "on the Pareto front" } }
+                        @if !self.on_front.is_empty() { span.front { (on_front) } }
                         a download="table.csv" href={
                             "data:text/csv;charset=utf-8;base64," (BASE64_STANDARD.encode(self.csv()))
                         } { "Take the unrounded figures along (CSV)" }
@@ -276,7 +279,7 @@ mod tests {
     #[test]
     fn people_read_rounded_figures() {
         let expected = "| name | missed, % | ms |\n|---|---|---|\n\
-            | a, \"b\" | 12.35 | 2.2 |\n| c\\|d | 0 | – |\n| e | 3e-5 | – |\n";
+            | a, \"b\" | 12.35 | 2.2 |\n| c\\|d | 0 | – |\n| e | 3×10⁻⁵ | – |\n";
         assert_eq!(table().markdown(), expected);
     }
 

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
+use crate::scene::options::plain::{one_or_more, readable};
 use crate::scene::{FilePath, Mode, SceneFile, SceneOptions};
 
 group! {
@@ -31,6 +31,7 @@ group! {
         /// Another renderer to compare with, as a command line that speaks the protocol of
         /// scripts/peers; may be given several times
         #[arg(long, value_name = "COMMAND")]
+        #[serde(deserialize_with = "one_or_more")]
         peer: Vec<String>,
 
         /// Where the reference's pictures are kept, so that each is computed once: a folder, or off

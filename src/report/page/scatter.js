@@ -42,7 +42,7 @@ class Scatter {
       svg('svg', { viewBox: '-8 -8 16 16', class: 'point best', 'aria-hidden': true }, this.shape(group)), group));
     if (this.points.some(({ onFront }) => onFront)) {
       items.push(element('li', {}, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': true },
-        svg('path', { class: 'front', d: 'M1 3H8V12H15' })), 'Pareto front (filled): nothing is both faster and closer'));
+        svg('path', { class: 'front', d: 'M1 3H8V12H15' })), 'Pareto front (filled): nothing less wrong is as fast, times within 10 % counting as equal'));
     }
     const legend = element('ul', { class: 'legend' }, ...items);
     if (!this.leftOut) return [legend];
@@ -80,9 +80,14 @@ class Scatter {
   layOut() {
     const positive = this.points.filter(({ y }) => y > 0);
     this.shelf = positive.length < this.points.length ? 34 : 0;
-    this.axes = [logAxis(this.points.map(({ x }) => x)), logAxis(positive.length ? positive.map(({ y }) => y) : [1])];
     this.box = { left: 52, right: this.width - 10, top: 26, bottom: this.height - 46 };
-    this.floor = this.box.bottom - this.shelf;
+    const { left, right, top, bottom } = this.box;
+    this.floor = bottom - this.shelf;
+    // A digit is 7.5 wide, a line of text 16 high.
+    this.axes = [
+      logAxis(this.points.map(({ x }) => x), right - left, (text) => 7.5 * text.length + 8),
+      logAxis(positive.length ? positive.map(({ y }) => y) : [1], this.floor - top, () => 22),
+    ];
   }
 
   placeX(x) {
@@ -146,8 +151,8 @@ class Scatter {
   }
 
   rows(point) {
-    const value = (axis, number) => [axis.label, `${figureText(number)}${axis.unit ? ` ${axis.unit}` : ''}`];
-    const rows = [value(this.x, point.x), value(this.y, point.y), ...point.details];
+    const value = (axis, figure) => [axis.label, `${figure}${axis.unit ? ` ${axis.unit}` : ''}`];
+    const rows = [value(this.x, point.xText), value(this.y, point.yText), ...point.details];
     return point.group === point.label ? rows : [['family', point.group], ...rows];
   }
 

@@ -28,10 +28,6 @@ function press(table, head) {
 
 for (const table of document.querySelectorAll('table.sortable')) {
   for (const head of table.tHead.rows[0].cells) {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.append(...head.childNodes);
-    button.addEventListener('click', () => press(table, head));
-    head.append(button);
+    head.replaceChildren(button({}, head.textContent, () => press(table, head)));
   }
 }

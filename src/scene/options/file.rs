@@ -82,6 +82,9 @@ impl SceneFile {
         if is_known(&wanted) {
             return Err(error.hint(format!("write '{wanted}'")));
         }
+        if let Some(near) = nearest(&wanted, known) {
+            return Err(error.hint(format!("did you mean '{near}'?")));
+        }
         let mut known: Vec<&str> = known.iter().map(String::as_str).collect();
         known.sort_unstable();
         known.dedup();
@@ -97,6 +100,14 @@ impl SceneFile {
     fn document(&self) -> Result<Spanned<DeTable<'_>>> {
         DeTable::parse(&self.text).map_err(|error| located(&error, &self.text, &self.place))
     }
+}
+
+/// The key most like `name`, if any is: by the measure and the limit of the parser of flags.
+fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a str> {
+    let alike = known.iter().map(|key| (strsim::jaro(name, key), key));
+    let alike = alike.filter(|(likeness, _)| *likeness > 0.7);
+    let nearest = alike.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    nearest.map(|(_, key)| key.as_str())
 }
 
 /// The scene file keys of a command's flags: their names, and those of its arguments without a

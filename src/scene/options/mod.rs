@@ -32,11 +32,11 @@ pub use camera::CameraOptions;
 pub use clip::ClipOptions;
 pub use file::{SceneFile, flag_names};
 pub use gradient::GradientScale;
-pub(crate) use numbers::concise;
 pub use numbers::{
-    AngleDeg, Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,
+    AngleDeg, Brightness, Contrast, Count, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,
     Shininess, SigmaMm, SigmaVoxels, StepVoxels, Termination, Zoom,
 };
+pub(crate) use numbers::{concise, whole};
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;
 pub use setting::Setting;

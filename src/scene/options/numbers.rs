@@ -57,6 +57,44 @@ pub(crate) fn concise(value: f64) -> String {
     }
 }
 
+/// How many of something: a whole number from 1 on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Count<T = u32>(T);
+
+impl<T: Copy> Count<T> {
+    pub fn get(self) -> T {
+        self.0
+    }
+}
+
+impl<T: TryFrom<u64>> std::str::FromStr for Count<T> {
+    type Err = crate::error::Error;
+
+    fn from_str(text: &str) -> crate::error::Result<Self> {
+        let number = whole(text, 1)?;
+        let count = T::try_from(number).ok();
+        count.map(Self).ok_or_else(|| too_large(text))
+    }
+}
+
+super::plain::readable!(Count<u32>, Count<u64>);
+
+/// A whole number from `least` on.
+pub(crate) fn whole(text: &str, least: u64) -> crate::error::Result<u64> {
+    use std::num::IntErrorKind::PosOverflow;
+    match text.trim().parse::<u64>() {
+        Ok(number) if number >= least => Ok(number),
+        Err(error) if *error.kind() == PosOverflow => Err(too_large(text)),
+        _ => Err(crate::error::Error::usage(format!(
+            "'{text}' is not a whole number from {least} on"
+        ))),
+    }
+}
+
+fn too_large(text: &str) -> crate::error::Error {
+    crate::error::Error::usage(format!("'{text}' is too large a number"))
+}
+
 /// A finite number.
 pub(super) fn number(text: &str) -> crate::error::Result<f64> {
     let value: Option<f64> = text.trim().parse().ok();
@@ -122,6 +160,24 @@ mod tests {
         }
         // The control: what is printed otherwise.
         assert_ne!(concise(1e200), 1e200.to_string());
+    }
+
+    #[test]
+    fn what_is_no_count_is_refused_in_words() {
+        assert_eq!("12".parse::<Count>().unwrap().get(), 12);
+        assert_eq!(
+            "5000000000".parse::<Count<u64>>().unwrap().get(),
+            5_000_000_000
+        );
+        for wrong in ["1.5", "-3", "0", "", "many"] {
+            let said = wrong.parse::<Count>().unwrap_err().to_string();
+            assert_eq!(said, format!("'{wrong}' is not a whole number from 1 on"));
+        }
+        for large in ["5000000000", "99999999999999999999"] {
+            let said = large.parse::<Count>().unwrap_err().to_string();
+            assert_eq!(said, format!("'{large}' is too large a number"));
+        }
+        assert_eq!(whole("0", 0).unwrap(), 0);
     }
 
     #[test]

@@ -4,10 +4,11 @@
 //! Every such type has one text form (`FromStr`, `Display`), which the command line shares.
 
 use std::fmt;
+use std::marker::PhantomData;
 use std::str::FromStr;
 
-use serde::de::{self, SeqAccess, Visitor};
-use serde::{Deserializer, Serializer};
+use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serializer};
 
 use crate::extent::ImageSize;
 
@@ -110,6 +111,37 @@ impl<'de> serde::Deserialize<'de> for Item {
     }
 }
 
+/// Reads an option that may be given several times: one value, or a list of them.
+pub(crate) fn one_or_more<'de, T, D>(from: D) -> Result<Option<Vec<T>>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    struct OneOrMore<T>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMore<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+            f.write_str("a string or a list of strings")
+        }
+
+        fn visit_str<E: de::Error>(self, text: &str) -> Result<Vec<T>, E> {
+            T::deserialize(text.into_deserializer()).map(|one| vec![one])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Vec<T>, A::Error> {
+            let mut all = Vec::new();
+            while let Some(one) = items.next_element()? {
+                all.push(one);
+            }
+            Ok(all)
+        }
+    }
+
+    from.deserialize_any(OneOrMore(PhantomData)).map(Some)
+}
+
 /// Lets types with a text form (`FromStr`) be read from scene files.
 macro_rules! readable {
     ($($type:ty),* $(,)?) => {$(
@@ -163,3 +195,29 @@ plain!(
     crate::scene::SamplingMethod,
     crate::scene::Traverse,
 );
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    #[derive(Debug, Default, PartialEq, Deserialize)]
+    #[serde(default)]
+    struct Options {
+        #[serde(deserialize_with = "super::one_or_more")]
+        peer: Option<Vec<String>>,
+    }
+
+    #[test]
+    fn what_may_be_given_several_times_may_be_given_once() {
+        let read = |text: &str| toml::from_str::<Options>(text).map(|options| options.peer);
+        assert_eq!(read("").unwrap(), None);
+        assert_eq!(read("peer = 'a'").unwrap(), Some(vec!["a".into()]));
+        let both = Some(vec!["a".into(), "b".into()]);
+        assert_eq!(read("peer = ['a', 'b']").unwrap(), both);
+        let said = read("peer = 3").unwrap_err().to_string();
+        assert!(
+            said.contains("expected a string or a list of strings"),
+            "{said}"
+        );
+    }
+}

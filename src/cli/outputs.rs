@@ -7,7 +7,7 @@ use std::str::FromStr;
 use crate::batch::FrameNames;
 use crate::error::{Error, Result};
 use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
-use crate::output::check_writable;
+use crate::output::{check_folder, check_writable};
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
 use crate::scene::{FilePath, FrameCount, SceneFile};
@@ -215,11 +215,7 @@ pub fn check_sequence(
             names.path(frame).display()
         )));
     }
-    let mut folder = folder(&names.path(0)).to_owned();
-    while !folder.exists() {
-        folder = self::folder(&folder).to_owned();
-    }
-    check_writable(&folder.join("frame"))
+    check_folder(folder(&names.path(0)))
 }
 
 /// The symbolic links in a folder; none where there is no folder.

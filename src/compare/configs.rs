@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::scene::toml_error::located;
-use crate::scene::{Mode, Setting};
+use crate::scene::{Mode, Part, SceneFile, SceneOptions, Setting};
 
 /// What a file of settings says.
 ///
@@ -44,11 +44,7 @@ impl Configs {
         let table: toml::Table = text
             .parse()
             .map_err(|error: toml::de::Error| located(&error, text, place).hint(HINT))?;
-        Self::of(&table).map_err(|error| error.at(place))
-    }
-
-    fn of(table: &toml::Table) -> Result<Self> {
-        let wrong = |sentence: String| Error::usage(sentence).hint(HINT);
+        let wrong = |sentence: String| Error::usage(sentence).hint(HINT).at(place);
         if let Some(key) = table.keys().find(|key| *key != "setting") {
             return Err(wrong(format!("'{key}' is no part of a file of settings")));
         }
@@ -60,12 +56,26 @@ impl Configs {
             let toml::Value::Table(entry) = entry else {
                 return Err(wrong(format!("setting {} is no table", at + 1)));
             };
-            let config = Config::of(entry.clone(), at + 1)?;
-            let name = config.setting.name();
+            let name = name_of(entry, at + 1).map_err(|error| error.at(place))?;
             if settings.iter().any(|other| other.setting.name() == name) {
                 return Err(wrong(format!("two settings are called '{name}'")));
             }
-            settings.push(config);
+            let named = |error: Error| error.at(format!("setting '{name}'")).at(place);
+            let modes = entry
+                .get("modes")
+                .map(modes_of)
+                .transpose()
+                .map_err(named)?;
+            let part = Part {
+                array: "setting",
+                nth: at,
+                without: &["name", "modes"],
+            };
+            let options = SceneOptions::of_whole(&SceneFile::of_part(text, place, part))?;
+            settings.push(Config {
+                setting: Setting::new(name, options).map_err(|error| error.at(place))?,
+                modes,
+            });
         }
         Ok(Self { settings })
     }
@@ -93,45 +103,30 @@ impl Configs {
     }
 }
 
-impl Config {
-    /// `number` counts from 1.
-    fn of(mut entry: toml::Table, number: usize) -> Result<Self> {
-        let name = match entry.remove("name") {
-            Some(toml::Value::String(name)) if name.contains(char::is_control) => {
-                return Err(Error::usage(format!(
-                    "setting {number}: its name has a line break or another control character"
-                )));
-            }
-            Some(toml::Value::String(name)) if !name.trim().is_empty() => name,
-            _ => {
-                return Err(Error::usage(format!("setting {number} has no name"))
-                    .hint("write name = \"...\""));
-            }
-        };
-        let modes = match entry.remove("modes") {
-            None => None,
-            Some(toml::Value::Array(modes)) if modes.is_empty() => {
-                return Err(Error::usage(format!("setting '{name}': modes is empty"))
-                    .hint("leave it out for every mode"));
-            }
-            Some(toml::Value::Array(modes)) => {
-                let mode = |mode: &toml::Value| match mode {
-                    toml::Value::String(text) => text.parse::<Mode>(),
-                    other => Err(Error::usage(format!("{other} is not a mode's name"))),
-                };
-                let modes: Result<Vec<Mode>> = modes.iter().map(mode).collect();
-                Some(modes.map_err(|error| error.at(format!("setting '{name}'")))?)
-            }
-            Some(_) => {
-                return Err(Error::usage(format!(
-                    "setting '{name}': modes is a list, such as [\"iso\", \"mip\"]"
-                )));
-            }
-        };
-        Ok(Self {
-            setting: Setting::parse(name, &entry.to_string())?,
-            modes,
-        })
+/// A setting's name; `number` counts from 1.
+fn name_of(entry: &toml::Table, number: usize) -> Result<String> {
+    match entry.get("name") {
+        Some(toml::Value::String(name)) if name.contains(char::is_control) => Err(Error::usage(
+            format!("setting {number}: its name has a line break or another control character"),
+        )),
+        Some(toml::Value::String(name)) if !name.trim().is_empty() => Ok(name.clone()),
+        _ => {
+            Err(Error::usage(format!("setting {number} has no name")).hint("write name = \"...\""))
+        }
+    }
+}
+
+fn modes_of(value: &toml::Value) -> Result<Vec<Mode>> {
+    let mode = |mode: &toml::Value| match mode {
+        toml::Value::String(text) => text.parse::<Mode>(),
+        other => Err(Error::usage(format!("{other} is not a mode's name"))),
+    };
+    match value {
+        toml::Value::Array(modes) if modes.is_empty() => {
+            Err(Error::usage("modes is empty").hint("leave it out for every mode"))
+        }
+        toml::Value::Array(modes) => modes.iter().map(mode).collect(),
+        _ => Err(Error::usage("modes is a list, such as [\"iso\", \"mip\"]")),
     }
 }
 
@@ -176,7 +171,11 @@ mod tests {
                 "[[setting]]\nname = 'a'\nmodes = [3]",
                 "3 is not a mode's name",
             ),
-            ("[[setting]]\nname = 'a'\nstep = -2", "a step of -2"),
+            ("[[setting]]\nname = 'a'\nstep = -2", "file:3: a step of -2"),
+            (
+                "[[setting]]\nname = 'a'\n[[setting]]\nname = 'b'\nstp = 2",
+                "file:5: 'stp'",
+            ),
             ("", "there is no [[setting]]"),
             ("[camera]\nfov = 3", "'camera' is no part"),
             ("setting = 3", "there is no [[setting]]"),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
-use toml::de::{DeTable, Deserializer};
+use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 
 use super::{
     CameraOptions, ClipOptions, FilePath, PictureOptions, SamplingOptions, SceneOptions,
@@ -22,6 +22,18 @@ pub struct SceneFile {
     place: String,
     /// Against which the files that it names are resolved.
     folder: PathBuf,
+    /// What of the text it is, if not all.
+    part: Option<Part>,
+}
+
+/// One table of an array of tables in a TOML text that holds more than a scene.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    pub array: &'static str,
+    /// From 0.
+    pub nth: usize,
+    /// Keys that are no options of a scene.
+    pub without: &'static [&'static str],
 }
 
 impl SceneFile {
@@ -34,6 +46,7 @@ impl SceneFile {
             text,
             place: path.display().to_string(),
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            part: None,
         })
     }
 
@@ -44,6 +57,15 @@ impl SceneFile {
             text: text.to_owned(),
             place: place.to_owned(),
             folder: PathBuf::new(),
+            part: None,
+        }
+    }
+
+    /// From a part of a text; otherwise as [`Self::of_text`].
+    pub fn of_part(text: &str, place: &str, part: Part) -> Self {
+        Self {
+            part: Some(part),
+            ..Self::of_text(text, place)
         }
     }
 
@@ -98,7 +120,23 @@ impl SceneFile {
     }
 
     fn document(&self) -> Result<Spanned<DeTable<'_>>> {
-        DeTable::parse(&self.text).map_err(|error| located(&error, &self.text, &self.place))
+        let document =
+            DeTable::parse(&self.text).map_err(|error| located(&error, &self.text, &self.place))?;
+        let Some(part) = self.part else {
+            return Ok(document);
+        };
+        let span = document.span();
+        let array = document.into_inner().remove(part.array);
+        let tables = match array.map(Spanned::into_inner) {
+            Some(DeValue::Array(tables)) => tables,
+            _ => DeArray::new(),
+        };
+        let mut table = match tables.into_iter().nth(part.nth).map(Spanned::into_inner) {
+            Some(DeValue::Table(table)) => table,
+            _ => DeTable::new(),
+        };
+        part.without.iter().for_each(|key| drop(table.remove(*key)));
+        Ok(Spanned::new(span, table))
     }
 }
 
@@ -148,11 +186,18 @@ impl SceneOptions {
     /// # Errors
     /// Anything wrong, an unknown key too, as `place:line: …`.
     pub fn parse(text: &str, place: &str) -> Result<Self> {
-        let file = SceneFile::of_text(text, place);
+        Self::of_whole(&SceneFile::of_text(text, place))
+    }
+
+    /// From a scene file that says nothing but the scene.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub fn of_whole(file: &SceneFile) -> Result<Self> {
         file.check_keys(&flag_names(&Self::augment_args(clap::Command::new(
             "scene",
         ))))?;
-        Self::of_file(&file)
+        Self::of_file(file)
     }
 }
 

@@ -30,7 +30,7 @@ mod words;
 pub use bound::{ErrorBound, ErrorMetric};
 pub use camera::CameraOptions;
 pub use clip::ClipOptions;
-pub use file::{SceneFile, flag_names};
+pub use file::{Part, SceneFile, flag_names};
 pub use gradient::GradientScale;
 pub use numbers::{
     AngleDeg, Brightness, Contrast, Count, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,

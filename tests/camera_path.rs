@@ -1,7 +1,7 @@
 //! An orbit: where its cameras are, and that it closes.
 
 use angioray::extent::Range;
-use angioray::scene::{Orbit, OrbitAxis, Resolved, SceneOptions, Subject};
+use angioray::scene::{FrameCount, Orbit, OrbitAxis, Resolved, SceneOptions, Subject};
 use glam::DVec3;
 
 fn subject() -> Subject {
@@ -23,6 +23,7 @@ fn seen(options: &str) -> Resolved {
 }
 
 fn orbit(options: &str, axis: &str, degrees: f64, frames: u32) -> Orbit {
+    let frames = FrameCount::new(frames).unwrap();
     Orbit::new(seen(options), axis.parse().unwrap(), degrees, frames).unwrap()
 }
 
@@ -130,12 +131,19 @@ fn axes_and_numbers_that_make_no_orbit_are_refused() {
         assert!(said.to_string().contains("is not an axis"), "{said}");
         assert_eq!(said.exit_code(), 2);
     }
-    let made = |degrees, frames| Orbit::new(seen(""), OrbitAxis::Up, degrees, frames);
-    for (degrees, frames) in [(360.0, 0), (360.0, Orbit::MOST_FRAMES + 1), (f64::NAN, 3)] {
-        assert_eq!(made(degrees, frames).unwrap_err().exit_code(), 2);
+    for wrong in ["0", "1000001", "4000000000", "5000000000", "-1", "many"] {
+        let said = wrong.parse::<FrameCount>().unwrap_err();
+        assert!(said.to_string().contains("there must be 1 to"), "{said}");
+        assert_eq!(said.exit_code(), 2);
     }
-    // The control.
-    assert_eq!(made(360.0, 3).unwrap().frames(), 3);
+    let three = "3".parse().unwrap();
+    let made = |degrees| Orbit::new(seen(""), OrbitAxis::Up, degrees, three);
+    for degrees in [f64::NAN, f64::INFINITY] {
+        assert_eq!(made(degrees).unwrap_err().exit_code(), 2);
+    }
+    // The controls.
+    assert_eq!("1000000".parse(), FrameCount::new(FrameCount::MOST));
+    assert_eq!(made(360.0).unwrap().frames(), 3);
     // A direction of any length.
     assert_eq!("0,0,7".parse(), Ok(OrbitAxis::World(DVec3::Z)));
 }

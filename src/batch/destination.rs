@@ -22,6 +22,7 @@ pub struct Shot<T> {
 
 /// What is remembered of a frame that has been written.
 pub struct Written<T> {
+    /// Which one of the path it is.
     pub index: u32,
     pub about: T,
     /// Encoding and writing it; in an animation the last one's takes in closing the file.
@@ -31,14 +32,38 @@ pub struct Written<T> {
 /// What frames are written to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Destination {
+    /// Every frame to a file of its own.
     Pictures {
         names: FrameNames,
         encoding: Encoding,
     },
-    Animation {
-        path: PathBuf,
-        animation: Animation,
-    },
+    /// All frames to one file.
+    Animation { path: PathBuf, animation: Animation },
+}
+
+/// What a frame depends on beside its scene. Pictures carry it, so that no frame of another volume,
+/// device or program is taken for one that is there already.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Provenance {
+    /// The program's.
+    pub version: &'static str,
+    /// The volume's [content](crate::volume::Volume::content_hash), in hexadecimal: another one may
+    /// come to lie under the same name.
+    pub content: String,
+    /// The name of what rendered.
+    pub device: String,
+}
+
+impl Provenance {
+    /// The keys and texts of a picture's metadata; `scene` is the frame's.
+    fn metadata<'a>(&'a self, scene: &'a str) -> [(&'static str, &'a str); 4] {
+        [
+            ("scene", scene),
+            ("version", self.version),
+            ("content", &self.content),
+            ("device", &self.device),
+        ]
+    }
 }
 
 impl Destination {
@@ -75,26 +100,26 @@ impl Destination {
         }
     }
 
-    /// Whether a frame is there already: whole, and of this scene by this version.
-    pub fn holds(&self, index: u32, size: ImageSize, metadata: &[(&str, &str)]) -> bool {
+    /// Whether a frame is there already: whole, of this scene and this provenance.
+    pub fn holds(&self, index: u32, size: ImageSize, scene: &str, from: &Provenance) -> bool {
         match self {
             Self::Pictures { names, encoding } => {
-                is_whole(&names.path(index), size, encoding, metadata)
+                is_whole(&names.path(index), size, encoding, &from.metadata(scene))
             }
             Self::Animation { .. } => false,
         }
     }
 
     /// Writes frames as they come, every picture whole or not at all, an animation likewise.
-    /// `reel` is what comes; `version` is the program's, for pictures to carry beside the scene; an animation carries
-    /// `scene`.
+    /// `reel` is what comes; a picture carries its own scene and `from`, an animation `scene` and
+    /// `from`.
     ///
     /// # Errors
     /// The first error among `shots`, the pictures before it being written; what cannot be written.
     pub fn write<T>(
         &self,
         reel: Reel,
-        version: &str,
+        from: &Provenance,
         scene: &str,
         shots: &mut dyn Iterator<Item = Result<Shot<T>>>,
     ) -> Result<Vec<Written<T>>> {
@@ -109,7 +134,7 @@ impl Destination {
                         about,
                     } = shot?;
                     let began = Instant::now();
-                    let metadata = [("scene", scene.as_str()), ("version", version)];
+                    let metadata = from.metadata(&scene);
                     frame::write(&names.path(index), &frame, encoding, &metadata)?;
                     written.push(Written {
                         index,
@@ -119,7 +144,7 @@ impl Destination {
                 }
             }
             Self::Animation { path, animation } => {
-                let metadata = [("scene", scene), ("version", version)];
+                let metadata = from.metadata(scene);
                 let mut handed: Option<Instant> = None;
                 let mut frames = std::iter::from_fn(|| {
                     settle(&mut written, handed.take());

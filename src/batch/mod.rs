@@ -7,6 +7,6 @@ mod names;
 mod shard;
 
 pub use beside::beside;
-pub use destination::{Destination, Shot, Written};
+pub use destination::{Destination, Provenance, Shot, Written};
 pub use names::FrameNames;
 pub use shard::{Shard, ShardChoice};

@@ -1,5 +1,6 @@
 //! The files of a sequence: a name with a place for the frame's number.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
@@ -17,6 +18,8 @@ pub struct FrameNames {
 impl FrameNames {
     const MOST_DIGITS: usize = 20;
 
+    /// Reads a pattern.
+    ///
     /// # Errors
     /// No place, more than one, or something else after a percent sign (usage).
     pub fn of(pattern: &Path) -> Result<Self> {
@@ -78,14 +81,30 @@ impl FrameNames {
         &self.folder
     }
 
+    /// The file of a frame.
     pub fn path(&self, frame: u32) -> PathBuf {
+        self.folder.join(self.name(frame))
+    }
+
+    /// The frame whose file has this name, in whatever folder.
+    pub fn frame(&self, name: &OsStr) -> Option<u32> {
+        let name = name.to_str()?;
+        let number = name
+            .strip_prefix(&*self.before)?
+            .strip_suffix(&*self.after)?;
+        let frame = number.parse().ok()?;
+        // Neither signs nor other widths.
+        (self.name(frame) == name).then_some(frame)
+    }
+
+    fn name(&self, frame: u32) -> String {
         let Self {
             before,
             digits,
             after,
             ..
         } = self;
-        self.folder.join(format!("{before}{frame:0digits$}{after}"))
+        format!("{before}{frame:0digits$}{after}")
     }
 }
 
@@ -106,6 +125,27 @@ mod tests {
         assert_eq!(name("/a/%%d/b%03d", 1), "/a/%%d/b001");
         let names = FrameNames::of(Path::new("a/b/%d.png")).unwrap();
         assert_eq!(names.folder(), Path::new("a/b"));
+    }
+
+    #[test]
+    fn a_frame_is_known_by_its_name() {
+        let names = FrameNames::of(Path::new("f/a%03d.png")).unwrap();
+        let frame = |name: &str| names.frame(OsStr::new(name));
+        for number in [0, 7, 999, 1000, u32::MAX] {
+            let path = names.path(number);
+            assert_eq!(names.frame(path.file_name().unwrap()), Some(number));
+        }
+        for other in [
+            "a7.png",
+            "a0007.png",
+            "a+07.png",
+            "a007.jpg",
+            "b007.png",
+            "a.png",
+        ] {
+            assert_eq!(frame(other), None, "{other}");
+        }
+        assert_eq!(frame("a4294967296.png"), None);
     }
 
     #[test]

@@ -17,6 +17,8 @@ impl Shard {
     /// All frames.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
+    /// The share of process `index`, counted from 0, of `count`.
+    ///
     /// # Errors
     /// An index that is not below the count (usage).
     pub fn new(index: u32, count: u32) -> Result<Self> {
@@ -26,6 +28,22 @@ impl Shard {
             )));
         }
         Ok(Self { index, count })
+    }
+
+    /// Which of how many processes it is.
+    pub fn index(self) -> u32 {
+        self.index
+    }
+
+    /// Its share where every process of `outer` is as many processes as this one is of.
+    fn within(self, outer: Self) -> Result<Self> {
+        let count = outer.count.checked_mul(self.count).ok_or_else(|| {
+            Error::usage(format!(
+                "shard {self} of shard {outer}: there are more than {} processes",
+                u32::MAX
+            ))
+        })?;
+        Self::new(outer.index * self.count + self.index, count)
     }
 
     /// Its frames among the first `frames`.
@@ -48,32 +66,31 @@ pub enum ShardChoice {
     Auto,
 }
 
-/// Variables that tell a process which of how many it is: the index, the first index (0 where none
-/// is named), the count. A Slurm array's tasks are jobs of their own; within a job the nearest
-/// starter is believed.
-const VARIABLES: [(&str, Option<&str>, &str); 4] = [
-    (
-        "SLURM_ARRAY_TASK_ID",
-        Some("SLURM_ARRAY_TASK_MIN"),
-        "SLURM_ARRAY_TASK_COUNT",
-    ),
-    ("OMPI_COMM_WORLD_RANK", None, "OMPI_COMM_WORLD_SIZE"),
-    ("PMI_RANK", None, "PMI_SIZE"),
-    ("SLURM_PROCID", None, "SLURM_NTASKS"),
+/// Variables that tell a process which of how many processes of its job it is, index and count, the
+/// nearest starter first. Slurm's count is that of srun's step: a batch script itself has a
+/// `SLURM_PROCID` too, 0 of however many tasks the job may start.
+const RANKS: [(&str, &str); 3] = [
+    ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
+    ("PMI_RANK", "PMI_SIZE"),
+    ("SLURM_PROCID", "SLURM_STEP_NUM_TASKS"),
 ];
 
+/// A Slurm array's tasks are jobs of their own, each of which may start processes.
+const ARRAY_TASK: &str = "SLURM_ARRAY_TASK_ID";
+const ARRAY_FIRST: &str = "SLURM_ARRAY_TASK_MIN";
 const ARRAY_STEP: &str = "SLURM_ARRAY_TASK_STEP";
+const ARRAY_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
 
 impl ShardChoice {
-    /// The shard and, where it was found in the environment, the variable that told it. `variable`
-    /// looks one up.
+    /// The shard and, where it was found in the environment, the variables that told it: process p
+    /// of t in task a of an array of n is shard a·t + p of n·t. `variable` looks one up.
     ///
     /// # Errors
     /// No variable or one that makes no sense (usage).
     pub fn resolve(
         self,
         variable: impl Fn(&str) -> Option<String>,
-    ) -> Result<(Shard, Option<&'static str>)> {
+    ) -> Result<(Shard, Option<String>)> {
         if let Self::Given(shard) = self {
             return Ok((shard, None));
         }
@@ -85,25 +102,35 @@ impl ShardChoice {
                 ))
             }),
         };
-        for (index_name, first_name, count_name) in VARIABLES {
-            if variable(index_name).is_none() || variable(count_name).is_none() {
-                continue;
-            }
-            let (first, step) = match first_name {
-                Some(first_name) => (number(first_name, 0)?, number(ARRAY_STEP, 1)?.max(1)),
-                None => (0, 1),
-            };
-            let (index, count) = (number(index_name, 0)?, number(count_name, 0)?);
-            let shard = Shard::new(index.saturating_sub(first) / step, count);
-            return Ok((shard.map_err(|e| e.at(index_name))?, Some(index_name)));
+        let is_set = |name: &str| variable(name).is_some();
+        let mut told = None;
+        if is_set(ARRAY_TASK) && is_set(ARRAY_COUNT) {
+            let (first, step) = (number(ARRAY_FIRST, 0)?, number(ARRAY_STEP, 1)?.max(1));
+            let (task, count) = (number(ARRAY_TASK, 0)?, number(ARRAY_COUNT, 0)?);
+            let shard = Shard::new(task.saturating_sub(first) / step, count);
+            told = Some((shard.map_err(|e| e.at(ARRAY_TASK))?, ARRAY_TASK.to_owned()));
         }
-        let names: Vec<&str> = VARIABLES.iter().map(|(index, _, _)| *index).collect();
+        let rank = RANKS
+            .into_iter()
+            .find(|(index, count)| is_set(index) && is_set(count));
+        if let Some((index_name, count_name)) = rank {
+            let shard = Shard::new(number(index_name, 0)?, number(count_name, 0)?);
+            let rank = shard.map_err(|e| e.at(index_name))?;
+            told = Some(match told {
+                Some((task, by)) => (rank.within(task)?, format!("{by} and {index_name}")),
+                None => (rank, index_name.to_owned()),
+            });
+        }
+        if let Some((shard, by)) = told {
+            return Ok((shard, Some(by)));
+        }
+        let ranks = RANKS.map(|(index, count)| format!("{index} and {count}"));
         Err(Error::usage(
             "shard auto: nothing in the environment says which of how many processes this is",
         )
         .hint(format!(
-            "start it by sbatch --array, srun or mpirun (which set one of {}), or write --shard I/N",
-            names.join(", ")
+            "start it by sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",
+            ranks.join(", or ")
         )))
     }
 }
@@ -163,16 +190,36 @@ mod tests {
             ("SLURM_ARRAY_TASK_STEP", "2"),
             ("SLURM_ARRAY_TASK_COUNT", "5"),
             ("SLURM_PROCID", "0"),
-            ("SLURM_NTASKS", "1"),
+            ("SLURM_NTASKS", "4"),
         ];
-        assert_eq!(
-            auto(&array).unwrap(),
-            (shard(3, 5), Some("SLURM_ARRAY_TASK_ID"))
-        );
-        assert_eq!(
-            auto(&array[4..]).unwrap(),
-            (shard(0, 1), Some("SLURM_PROCID"))
-        );
+        let told = |variables: &[_]| {
+            let (shard, by) = auto(variables).unwrap();
+            (shard, by.unwrap())
+        };
+        assert_eq!(told(&array), (shard(3, 5), "SLURM_ARRAY_TASK_ID".into()));
+        // A batch script that srun did not start is no process of several.
+        assert_eq!(auto(&array[4..]).unwrap_err().exit_code(), 2);
+        let step = [
+            ("SLURM_PROCID", "2"),
+            ("SLURM_NTASKS", "8"),
+            ("SLURM_STEP_NUM_TASKS", "4"),
+        ];
+        assert_eq!(told(&step), (shard(2, 4), "SLURM_PROCID".into()));
+        // Steps of an array's tasks: every share once.
+        let both = [&array[..4], &step[..]].concat();
+        let by = "SLURM_ARRAY_TASK_ID and SLURM_PROCID";
+        assert_eq!(told(&both), (shard(14, 20), by.into()));
+        let mut all: Vec<u32> = (0..5)
+            .flat_map(|task| (0..4).map(move |rank| (task, rank)))
+            .map(|(task, rank)| {
+                let within = shard(rank, 4).within(shard(task, 5)).unwrap();
+                assert_eq!(within.count, 20);
+                within.index
+            })
+            .collect();
+        all.sort_unstable();
+        assert_eq!(all, (0..20).collect::<Vec<_>>());
+        assert!(shard(0, 1 << 16).within(shard(0, 1 << 16)).is_err());
         let mpi = [("OMPI_COMM_WORLD_RANK", "2"), ("OMPI_COMM_WORLD_SIZE", "4")];
         assert_eq!(auto(&mpi).unwrap().0, shard(2, 4));
         assert_eq!(

@@ -220,7 +220,7 @@ fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Resul
         renderer.render(scene, wanted)?
     } else {
         let (center_world, _) = renderer.volume().bounding_sphere();
-        renderer.render(&protocol::turned(scene, center_world, azimuth_deg)?, wanted)?
+        renderer.render(&protocol::turned(scene, center_world, azimuth_deg), wanted)?
     };
     Ok(rendering.render_ms)
 }

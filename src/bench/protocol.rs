@@ -1,10 +1,10 @@
 //! What the camera does while frames are timed.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::error::{Error, Result};
+use crate::scene::Scene;
 use crate::scene::options::plain::readable;
-use crate::scene::{Camera, Scene};
 
 use super::Effort;
 
@@ -80,24 +80,18 @@ readable!(Protocol);
 
 /// The scene with its camera turned about the axis through `center_world` toward the head: as
 /// `--azimuth` does from the named views.
-///
-/// # Errors
-/// None in practice: a sound camera turned is sound.
-pub(super) fn turned(scene: &Scene, center_world: DVec3, degrees: f64) -> Result<Scene> {
-    let turn = DMat3::from_rotation_z(degrees.to_radians());
-    let camera = scene.camera;
-    let eye_world = center_world + turn * (camera.eye_world() - center_world);
-    let target_world = eye_world + turn * camera.forward();
-    Ok(Scene {
-        camera: Camera::look_at(eye_world, target_world, turn * camera.up(), camera.lens())?,
+pub(super) fn turned(scene: &Scene, center_world: DVec3, degrees: f64) -> Scene {
+    Scene {
+        camera: scene.camera.turned(DVec3::Z, center_world, degrees),
         ..scene.clone()
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::Specimen;
     use super::*;
+    use crate::scene::Camera;
     use crate::volume::PhantomKind;
 
     #[test]
@@ -107,7 +101,7 @@ mod tests {
         let scene = specimen.surface(16).unwrap();
         let text = "mode = 'iso'\nsize = '16x16'\nazimuth = 70\nelevation = 20\n";
         let by_flag = specimen.resolved(text).unwrap().camera;
-        let eye = |degrees| turned(&scene, center_world, degrees).unwrap().camera;
+        let eye = |degrees| turned(&scene, center_world, degrees).camera;
         let apart = |a: Camera, b: Camera| {
             let eyes = a.eye_world().distance(b.eye_world());
             eyes + a.up().distance(b.up()) + a.forward().distance(b.forward())

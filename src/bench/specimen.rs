@@ -196,10 +196,7 @@ impl Specimen {
     pub(super) fn identity(&self) -> String {
         let volume = &self.volume;
         let (dims, kind) = (volume.dims(), volume.voxels().voxel_type().name());
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(format!("{:?} {:?}", volume.geometry(), volume.rescale()).as_bytes());
-        hasher.update(volume.voxels().bytes());
-        let content = hasher.finalize().to_hex();
+        let content = volume.content_hash().to_hex();
         format!(
             "{} ({dims} {kind}, iso {}, content {})",
             self.name,

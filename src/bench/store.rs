@@ -64,12 +64,7 @@ impl Store {
             return Ok(found);
         }
         self.check_stop()?;
-        let found = compute().or_else(|failure| {
-            // A signal while kernels are built makes LLVM remove the files that it is writing, so
-            // that the build fails: that is the stop, not a fault.
-            self.check_stop()?;
-            Err(failure)
-        })?;
+        let found = stop::over_failure(compute(), || self.check_stop())?;
         self.journal.borrow_mut().keep(key, &found)?;
         Ok(found)
     }

@@ -131,6 +131,14 @@ impl Engine {
         }
     }
 
+    /// What renders, for the statistics.
+    pub fn device(&self) -> DeviceStats {
+        match self {
+            Self::Reference => reference_stats(),
+            Self::Device { device, .. } => device.info().into(),
+        }
+    }
+
     /// What the device needs of the volume, besides the volume: nothing where the reference
     /// renders.
     pub fn prepare(
@@ -235,6 +243,14 @@ impl Caster<'_> {
     }
 }
 
+fn reference_stats() -> DeviceStats {
+    DeviceStats {
+        name: "reference".into(),
+        platform: "host".into(),
+        driver: concat!("angioray ", env!("CARGO_PKG_VERSION")).into(),
+    }
+}
+
 fn by_reference(
     volume: &Volume,
     scene: &Scene,
@@ -246,11 +262,7 @@ fn by_reference(
     let render_ms = ms_since(began);
     Ok(Rendered {
         frame,
-        device: DeviceStats {
-            name: "reference".into(),
-            platform: "host".into(),
-            driver: concat!("angioray ", env!("CARGO_PKG_VERSION")).into(),
-        },
+        device: reference_stats(),
         times_ms: Times {
             render: render_ms,
             ..Times::default()

@@ -10,7 +10,7 @@ use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
 use crate::output::check_writable;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::scene::{FilePath, SceneFile};
+use crate::scene::{FilePath, FrameCount, SceneFile};
 
 group! {
     /// The files that a rendering writes.
@@ -98,6 +98,20 @@ impl OutputOptions {
         Ok(encoding)
     }
 
+    /// How the pictures of an animation are made: from the same plane as a PNG of 8 bits.
+    ///
+    /// # Errors
+    /// What an animation cannot hold.
+    pub fn encoding_of_animation(&self) -> Result<Encoding> {
+        if self.bit_depth == Some(Bits(BitDepth::Sixteen)) {
+            return Err(Error::usage(
+                "16 bits per channel (--bit-depth 16) are for .png files only: an animation has 8",
+            )
+            .hint("write pictures, such as -o frames/%04d.png"));
+        }
+        self.encoding(Path::new("frame.png"))
+    }
+
     /// # Errors
     /// As [`OutputOptions::path`] and [`OutputOptions::encoding`].
     pub fn files(self) -> Result<Files> {
@@ -172,20 +186,29 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// That no file of a sequence replaces one that the job reads or, in `stats`, writes besides; and
-/// that they can be written, their folder being made where there is none.
+/// That no file of a sequence of so many frames replaces one that the job reads or, in `stats`,
+/// writes besides; and that they can be written, their folder being made where there is none.
 pub fn check_sequence(
     names: &FrameNames,
-    mut frames: impl Iterator<Item = u32>,
+    frames: FrameCount,
     inputs: &[impl AsRef<Path>],
     stats: Option<&Path>,
 ) -> Result<()> {
-    let read: Vec<PathBuf> = inputs.iter().map(|input| place(input.as_ref())).collect();
-    let stats = stats.map(place);
-    let taken = frames.find(|&frame| {
-        let picture = place(&names.path(frame));
-        read.contains(&picture) || stats.as_ref() == Some(&picture)
-    });
+    let inputs = inputs.iter().map(AsRef::as_ref);
+    let others: Vec<PathBuf> = inputs.chain(stats).map(place).collect();
+    // Those in the folder by their names, those behind a link of a frame's name by where it leads.
+    let folder_place = place(folder(&names.path(0)));
+    let here = others
+        .iter()
+        .filter(|other| folder(other) == folder_place)
+        .cloned();
+    let links = links_in(&folder_place)
+        .into_iter()
+        .filter(|link| others.contains(&place(link)));
+    let taken = here
+        .chain(links)
+        .filter_map(|path| names.frame(path.file_name()?))
+        .find(|&frame| frame < frames.get());
     if let Some(frame) = taken {
         return Err(Error::usage(format!(
             "{}: this file is read, or is where the statistics go: writing frame {frame} would replace it",
@@ -197,6 +220,15 @@ pub fn check_sequence(
         folder = self::folder(&folder).to_owned();
     }
     check_writable(&folder.join("frame"))
+}
+
+/// The symbolic links in a folder; none where there is no folder.
+fn links_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_symlink()))
+        .map(|entry| entry.path())
+        .collect()
 }
 
 /// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.

@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::frame::Wanted;
 use crate::scene::{Camera, ErrorBound, SceneOptions};
-pub use crate::tolerance::ToleranceStats;
 use crate::tolerance::{self, Choice, SEED, Task};
 
 use super::engine::Caster;

@@ -147,7 +147,7 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: worth their time, nothing less wrong being as fast, with ms and {} in {}: \
+            "{mode}: worth their time, nothing less wrong being as fast, with ms and {} ({}): \
              {settings}",
             wrongness.title, wrongness.unit
         )

@@ -22,10 +22,14 @@ pub(super) fn encode(
         BitDepth::Sixteen => (::png::BitDepth::Sixteen, quantize::rgb16_big_endian(frame)?),
     };
     let written = write_rgb(out, frame.size, depth, Compression::Fast, metadata, &bytes);
-    written.map_err(|error| match error {
+    written.map_err(|error| not_written(path, error))
+}
+
+pub(super) fn not_written(path: &Path, error: EncodingError) -> Error {
+    match error {
         EncodingError::IoError(cause) => Error::io(path, "write", &cause),
         other => Error::failed(format!("{}: cannot write: {other}", path.display())),
-    })
+    }
 }
 
 /// A whole file of 8 bits a channel; `rgb` holds R, G, B of each pixel of `size`.
@@ -45,6 +49,19 @@ fn write_rgb(
     metadata: &[(&str, &str)],
     bytes: &[u8],
 ) -> std::result::Result<(), EncodingError> {
+    let mut writer = rgb_encoder(out, size, depth, compression, metadata)?.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()
+}
+
+/// For RGB in sRGB, the metadata as iTXt chunks: of a PNG, and of an animated one's frames.
+pub(super) fn rgb_encoder<'a, W: Write>(
+    out: W,
+    size: ImageSize,
+    depth: ::png::BitDepth,
+    compression: Compression,
+    metadata: &[(&str, &str)],
+) -> std::result::Result<Encoder<'a, W>, EncodingError> {
     let mut encoder = Encoder::new(out, size.width(), size.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(depth);
@@ -53,9 +70,7 @@ fn write_rgb(
     for (key, text) in metadata {
         encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned())?;
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(bytes)?;
-    writer.finish()
+    Ok(encoder)
 }
 
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.

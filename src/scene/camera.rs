@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::view::sin_cos_deg;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
@@ -74,6 +75,25 @@ impl Camera {
             forward,
             lens,
         })
+    }
+
+    /// Turned right-handed by `degrees` about the line through `about_world` along `axis`, a unit
+    /// direction in world space (Rodrigues' formula). Quarter turns are exact, and a whole turn is
+    /// no turn, to the last bit.
+    #[must_use]
+    pub fn turned(&self, axis: DVec3, about_world: DVec3, degrees: f64) -> Self {
+        let (sin, cos) = sin_cos_deg(degrees);
+        if (sin, cos) == (0.0, 1.0) {
+            return *self;
+        }
+        let turned = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+        Self {
+            eye_world: about_world + turned(self.eye_world - about_world),
+            right: turned(self.right),
+            up: turned(self.up),
+            forward: turned(self.forward),
+            lens: self.lens,
+        }
     }
 
     pub fn eye_world(&self) -> DVec3 {

@@ -26,7 +26,7 @@ pub use gradient::{Gradient, Precomputed};
 pub use homogeneity::{Homogeneity, HomogeneityRule};
 pub use light::{Light, Phong, Reflection};
 pub use options::*;
-pub use path::{Orbit, OrbitAxis};
+pub use path::{FrameCount, Orbit, OrbitAxis};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Traverse};

@@ -6,7 +6,6 @@ use glam::DVec3;
 
 use super::options::plain::readable;
 use super::options::{Resolved, Triple};
-use super::view::sin_cos_deg;
 use crate::error::{Error, Result};
 
 /// What an orbit turns about: a line through the camera's target (`--axis`).
@@ -49,6 +48,47 @@ impl FromStr for OrbitAxis {
 
 readable!(OrbitAxis);
 
+/// How many frames a path has (`--frames`): from 1 to [`FrameCount::MOST`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameCount(u32);
+
+impl FrameCount {
+    /// Nine hours at 30 a second.
+    pub const MOST: u32 = 1_000_000;
+
+    /// # Errors
+    /// No frames, or more than [`Self::MOST`] (usage).
+    pub fn new(frames: u32) -> Result<Self> {
+        if (1..=Self::MOST).contains(&frames) {
+            return Ok(Self(frames));
+        }
+        Err(Error::usage(format!(
+            "an orbit of {frames} frames: there must be 1 to {}",
+            Self::MOST
+        )))
+    }
+
+    pub fn get(self) -> u32 {
+        self.0
+    }
+}
+
+impl FromStr for FrameCount {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let frames = text.trim().parse().map_err(|_| {
+            Error::usage(format!(
+                "'{text}' is not a number of frames: there must be 1 to {}",
+                Self::MOST
+            ))
+        })?;
+        Self::new(frames)
+    }
+}
+
+readable!(FrameCount);
+
 /// A scene seen from all around: frame k of N is turned by k·degrees/N, so that a whole turn closes
 /// without a repeated frame.
 ///
@@ -60,22 +100,16 @@ pub struct Orbit {
     first: Resolved,
     axis: DVec3,
     degrees: f64,
-    frames: u32,
+    frames: FrameCount,
 }
 
 impl Orbit {
-    /// The most frames: nine hours at 30 a second.
-    pub const MOST_FRAMES: u32 = 1_000_000;
-
+    /// Around the target of `first`, which is frame 0; the camera of all `frames` of them would have
+    /// turned by `degrees`.
+    ///
     /// # Errors
-    /// No frames or more than [`Self::MOST_FRAMES`], an angle that is not finite (usage).
-    pub fn new(first: Resolved, axis: OrbitAxis, degrees: f64, frames: u32) -> Result<Self> {
-        if !(1..=Self::MOST_FRAMES).contains(&frames) {
-            return Err(Error::usage(format!(
-                "an orbit of {frames} frames: there must be 1 to {}",
-                Self::MOST_FRAMES
-            )));
-        }
+    /// An angle that is not finite (usage).
+    pub fn new(first: Resolved, axis: OrbitAxis, degrees: f64, frames: FrameCount) -> Result<Self> {
         if !degrees.is_finite() {
             return Err(Error::usage("an orbit's angle must be finite"));
         }
@@ -93,8 +127,9 @@ impl Orbit {
         })
     }
 
+    /// How many frames it has, numbered from 0.
     pub fn frames(&self) -> u32 {
-        self.frames
+        self.frames.get()
     }
 
     /// Unit, world space.
@@ -105,7 +140,7 @@ impl Orbit {
     /// By how much a frame is turned; frame `frames()`, which is not part of the orbit, by all of
     /// its degrees.
     pub fn degrees_at(&self, frame: u32) -> f64 {
-        f64::from(frame) * self.degrees / f64::from(self.frames)
+        f64::from(frame) * self.degrees / f64::from(self.frames())
     }
 
     /// The scene as a frame sees it, everything but the eye and its up as in the first: what
@@ -115,23 +150,18 @@ impl Orbit {
     /// None, for what is a camera stays one when it is turned.
     pub fn at(&self, frame: u32) -> Result<Resolved> {
         let mut seen = self.first.clone();
-        let (sin, cos) = sin_cos_deg(self.degrees_at(frame));
-        let camera = &mut seen.options.camera;
-        // A whole turn is no turn, to the last bit.
-        if (sin, cos) != (0.0, 1.0)
-            && let (Some(Triple(eye)), Some(Triple(target)), Some(Triple(up))) =
-                (camera.eye, camera.target, camera.up)
-        {
-            let turned = |v: DVec3| turned(v, self.axis, sin, cos);
-            camera.eye = Some(Triple(target + turned(eye - target)));
-            camera.up = Some(Triple(turned(up)));
-            seen.scene.camera = camera.camera()?;
+        let options = &mut seen.options.camera;
+        let Some(Triple(target)) = options.target else {
+            return Ok(seen);
+        };
+        let first = self.first.scene.camera;
+        let turned = first.turned(self.axis, target, self.degrees_at(frame));
+        // A whole turn leaves the options as they are too, to the last bit.
+        if turned != first {
+            options.eye = Some(Triple(turned.eye_world()));
+            options.up = Some(Triple(turned.up()));
+            seen.scene.camera = options.camera()?;
         }
         Ok(seen)
     }
-}
-
-/// Right-handed about a unit axis (Rodrigues' formula).
-fn turned(v: DVec3, axis: DVec3, sin: f64, cos: f64) -> DVec3 {
-    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
 }

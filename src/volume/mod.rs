@@ -3,6 +3,7 @@
 //! Index space: voxel (i,j,k)'s centre is at (i,j,k), x fastest. World space: millimetres, LPS.
 
 mod buffer;
+mod content;
 mod geometry;
 mod histogram;
 mod phantom;

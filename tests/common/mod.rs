@@ -30,6 +30,11 @@ pub fn device() -> Option<Device> {
     }
 }
 
+/// The [`device`] under test as a flag of the program.
+pub fn device_flag() -> Option<String> {
+    device().map(|device| format!("--device {}", device.info().id))
+}
+
 /// Says why a test cannot be made here; fails it under `REQUIRE_OPENCL=1`.
 pub fn skip(reason: &str) {
     let required = std::env::var("REQUIRE_OPENCL").is_ok_and(|v| v == "1");

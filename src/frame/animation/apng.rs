@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
-use ::png::{ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
+use ::png::{BitDepth, Compression};
 
-use crate::error::{Error, Result};
-use crate::frame::{Frame, quantize};
+use crate::error::Result;
+use crate::frame::{Frame, png, quantize};
 
 use super::{FrameRate, Reel};
 
@@ -21,20 +21,10 @@ pub(super) fn encode(
     metadata: &[(&str, &str)],
     frames: &mut dyn Iterator<Item = Result<Frame>>,
 ) -> Result<()> {
-    let failed = |error: EncodingError| match error {
-        EncodingError::IoError(cause) => Error::io(path, "write", &cause),
-        other => Error::failed(format!("{}: cannot write: {other}", path.display())),
-    };
-    let mut encoder = Encoder::new(out, reel.size.width(), reel.size.height());
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(::png::BitDepth::Eight);
-    encoder.set_compression(Compression::Fast);
-    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    for (key, text) in metadata {
-        encoder
-            .add_itxt_chunk((*key).to_owned(), (*text).to_owned())
-            .map_err(failed)?;
-    }
+    let failed = |error| png::not_written(path, error);
+    let (depth, compression) = (BitDepth::Eight, Compression::Fast);
+    let encoder = png::rgb_encoder(out, reel.size, depth, compression, metadata);
+    let mut encoder = encoder.map_err(failed)?;
     encoder.set_animated(reel.frames, 0).map_err(failed)?;
     encoder
         .set_frame_delay(HUNDRED_SECONDS, rate.per_100_s())

@@ -1,0 +1,230 @@
+//! The frames of an orbit, one after another, until they are all there or it is asked to stop.
+
+use crate::batch::{Destination, Provenance, Shot, Written, beside};
+use crate::error::{Error, ErrorKind, Result};
+use crate::frame::{Reel, Wanted};
+use crate::progress::{Progress, Silent};
+use crate::scene::{Camera, Orbit};
+use crate::stop;
+use crate::tolerance::Choice;
+
+use super::super::engine::{Caster, Engine};
+use super::super::job::Job;
+use super::super::load::Loaded;
+use super::super::progress::Bars;
+use super::super::tolerance::choose;
+use super::plan::Plan;
+use super::stats::Taken;
+
+/// Frames on which a choice by `--max-error` is verified beside the first.
+const VERIFIED_BESIDE: u32 = 3;
+
+/// What an orbit is made of.
+pub struct Making<'a> {
+    pub plan: &'a Plan,
+    pub job: &'a Job,
+    pub engine: &'a Engine,
+    pub loaded: &'a Loaded,
+    pub from: &'a Provenance,
+    pub bars: &'a Bars,
+}
+
+/// What was made of it.
+pub struct Made {
+    /// Under the setting that was chosen, where one was.
+    pub orbit: Orbit,
+    pub chosen: Option<Choice>,
+    pub written: Vec<Written<Taken>>,
+    /// Why the rest is not.
+    pub stopped: Option<Error>,
+}
+
+impl Made {
+    fn nothing(orbit: Orbit, stopped: Option<Error>) -> Self {
+        Self {
+            orbit,
+            chosen: None,
+            written: Vec::new(),
+            stopped,
+        }
+    }
+}
+
+impl Making<'_> {
+    /// Which of this process's frames are still to be made.
+    pub fn missing(&self, orbit: &Orbit, mine: &[u32]) -> Result<Vec<u32>> {
+        if !self.plan.resume {
+            return Ok(mine.to_vec());
+        }
+        self.bars.begin("looking", mine.len() as u64);
+        let mut missing = Vec::new();
+        for &index in mine {
+            let seen = orbit.at(index)?;
+            let scene = seen.options.to_toml()?;
+            // After a stop nothing is made, so that it does not matter which.
+            let is_there = !stop::asked()
+                && (self.plan.destination).holds(index, seen.scene.size, &scene, self.from);
+            if !is_there {
+                missing.push(index);
+            }
+            self.bars.advance(1);
+        }
+        self.bars.end();
+        Ok(missing)
+    }
+
+    /// Makes these frames.
+    ///
+    /// # Errors
+    /// Anything but a stop between two pictures, which is part of what was made.
+    pub fn make(&self, mut orbit: Orbit, missing: &[u32]) -> Result<Made> {
+        if missing.is_empty() {
+            return Ok(Made::nothing(orbit, None));
+        }
+        let check = |chosen| self.check_stop(chosen, 0, missing.len());
+        if let Err(stopped) = check(None) {
+            return Ok(Made::nothing(orbit, Some(stopped)));
+        }
+        self.plan.destination.make_folder()?;
+        let (loaded, bars) = (self.loaded, self.bars);
+        let prepared = self
+            .engine
+            .prepare(&loaded.volume, &self.job.source, bars)?;
+        let mut caster = self.engine.caster(&loaded.volume, &prepared)?;
+        let chosen = match stop::over_failure(self.choose(&orbit, &mut caster), || check(None)) {
+            Err(stopped) if stopped.kind() == ErrorKind::Stopped => {
+                return Ok(Made::nothing(orbit, Some(stopped)));
+            }
+            chosen => chosen?,
+        };
+        if let Some(choice) = &chosen {
+            let (plan, first) = (self.plan, choice.resolved.clone());
+            orbit = Orbit::new(first, plan.axis, plan.degrees, plan.frames)?;
+        }
+        let (written, stopped) = self.write(&orbit, missing, chosen.as_ref(), &mut caster)?;
+        Ok(Made {
+            orbit,
+            chosen,
+            written,
+            stopped,
+        })
+    }
+
+    /// What an error bound chooses, where there is one.
+    fn choose(&self, orbit: &Orbit, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
+        let Some(bound) = self.job.bound else {
+            return Ok(None);
+        };
+        let (options, wanted) = (&self.job.options, self.wanted());
+        let elsewhere = spread(orbit)?;
+        choose(
+            bound,
+            options,
+            self.loaded,
+            wanted,
+            &elsewhere,
+            caster,
+            self.bars,
+        )
+    }
+
+    fn wanted(&self) -> Wanted {
+        Wanted::for_encoding(&self.plan.encoding, self.plan.stats.is_some())
+    }
+
+    /// Renders frames one after another, and encodes each beside the rendering of the next. Pictures
+    /// that are there when it is stopped stay; an animation without its end is an error.
+    fn write(
+        &self,
+        orbit: &Orbit,
+        missing: &[u32],
+        chosen: Option<&Choice>,
+        caster: &mut Caster<'_>,
+    ) -> Result<(Vec<Written<Taken>>, Option<Error>)> {
+        let first = orbit.at(0)?;
+        let scene = first.options.to_toml()?;
+        let reel = Reel {
+            size: first.scene.size,
+            frames: missing.len() as u32,
+        };
+        let wanted = self.wanted();
+        let destination = &self.plan.destination;
+        let mut stopped = None;
+        self.bars.begin("frames", missing.len() as u64);
+        let mut shot = |made: usize, index: u32| {
+            let check = || self.check_stop(chosen, made, missing.len());
+            check()?;
+            let seen = orbit.at(index)?;
+            let rendered = caster.render(&seen.scene, wanted, &Silent);
+            let rendered = stop::over_failure(rendered, check)?;
+            self.bars.advance(1);
+            let scene = seen.options.to_toml()?;
+            let (about, frame) = Taken::of(rendered, &seen.scene.picture, self.plan);
+            Ok(Shot {
+                index,
+                scene,
+                about,
+                frame,
+            })
+        };
+        let shots = (missing.iter().enumerate()).map_while(|(made, &index)| {
+            match (shot(made, index), destination) {
+                (Err(error), Destination::Pictures { .. }) if stop::asked() => {
+                    stopped = Some(error);
+                    None
+                }
+                (shot, _) => Some(shot),
+            }
+        });
+        let written = beside(shots, |shots| {
+            destination.write(reel, self.from, &scene, shots)
+        });
+        self.bars.end();
+        Ok((written?, stopped))
+    }
+
+    /// # Errors
+    /// It is asked to stop, `made` of `of` frames being made.
+    fn check_stop(&self, chosen: Option<&Choice>, made: usize, of: usize) -> Result<()> {
+        if !stop::asked() {
+            return Ok(());
+        }
+        if let Destination::Animation { path, .. } = &self.plan.destination {
+            return Err(Error::failed(format!(
+                "stopped at frame {made} of {of}: {} was not written",
+                path.display()
+            ))
+            .hint("pictures, such as -o frames/%04d.png, can be gone on with after a stop"));
+        }
+        let told = format!("stopped early: {made} of {of} frames are made");
+        if self.plan.ended_early() != ErrorKind::Stopped {
+            return Err(
+                Error::failed(told).hint("only .png and .exr can be gone on with, by --resume")
+            );
+        }
+        Err(Error::stopped(told).hint(match (self.job.bound, chosen) {
+            (None, _) => "the same command with --resume goes on".to_owned(),
+            (Some(_), Some(choice)) => format!(
+                "--resume goes on, with {} instead of --max-error",
+                choice.setting.flags()
+            ),
+            (Some(_), None) if made == 0 => "the same command begins anew".to_owned(),
+            (Some(_), None) => "--resume goes on, without --max-error".to_owned(),
+        }))
+    }
+}
+
+/// Where the camera is on frames spread over the orbit by the golden ratio: no two of them opposite
+/// each other, where projections are mirror images.
+fn spread(orbit: &Orbit) -> Result<Vec<Camera>> {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let frames = f64::from(orbit.frames());
+    let at = |k: u32| (frames * (f64::from(k) * GOLDEN).fract()) as u32;
+    let mut spread: Vec<u32> = (1..=VERIFIED_BESIDE).map(at).collect();
+    spread.sort_unstable();
+    spread.dedup();
+    let frames = spread.into_iter().filter(|&frame| frame != 0);
+    frames
+        .map(|frame| Ok(orbit.at(frame)?.scene.camera))
+        .collect()
+}

@@ -74,23 +74,30 @@ fn open(chromium: &Path, page: &str, value: &str) -> Seen {
     open_in(chromium, page, value, DESK, &[])
 }
 
+/// The page in a frame of a size, whose findings the page around it takes over: Chromium's own window
+/// is never narrower than 500 pixels.
+fn framed(page: &str, (width, height): (u32, u32)) -> String {
+    let page = page.replace('&', "&amp;").replace('"', "&quot;");
+    format!(
+        "<!DOCTYPE html><html><head></head><body style='margin:0'>\
+         <iframe style='width:{width}px;height:{height}px;border:0' srcdoc=\"{page}\"></iframe>\
+         <script>addEventListener('load', () => setTimeout(() => Object.assign(document.documentElement.dataset,\
+         document.querySelector('iframe').contentDocument.documentElement.dataset), 1000));</script></body></html>"
+    )
+}
+
 /// The same in a window of a size, with more flags of Chromium's.
-fn open_in(
-    chromium: &Path,
-    page: &str,
-    value: &str,
-    (width, height): (u32, u32),
-    flags: &[&str],
-) -> Seen {
+fn open_in(chromium: &Path, page: &str, value: &str, window: (u32, u32), flags: &[&str]) -> Seen {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let probe = format!(
         "<script>addEventListener('load', () => {{ const all = (s) => [...document.querySelectorAll(s)];\n\
          const text = (s) => all(s).map((e) => e.textContent);\n\
-         document.documentElement.dataset.probe = JSON.stringify((() => {{ {value} }})()); }});</script></body>"
+         document.documentElement.dataset.probe = JSON.stringify((() => {{ {value} }})()); }});</script>"
     );
     let (before, after) = page.rsplit_once("</body>").unwrap();
-    fs::write(at("page.html"), format!("{before}{probe}{after}")).unwrap();
+    let page = framed(&format!("{before}{probe}</body>{after}"), window);
+    fs::write(at("page.html"), page).unwrap();
     let mut child = Command::new(chromium)
         .args([
             "--headless",
@@ -104,11 +111,12 @@ fn open_in(
             "--disable-dev-shm-usage",
             "--enable-logging=stderr",
             "--v=0",
+            "--window-size=1200,900",
+            "--hide-scrollbars",
             "--virtual-time-budget=3000",
             "--dump-dom",
         ])
         .args(flags)
-        .arg(format!("--window-size={width},{height}"))
         .arg(format!("--user-data-dir={}", at("profile").display()))
         .arg(format!("file://{}", at("page.html").display()))
         .stdin(Stdio::null())
@@ -367,7 +375,7 @@ fn it_fits_a_phone() {
     assert_eq!(seen.faults(), [""; 0]);
     assert_eq!(seen.probe(), serde_json::json!([390, 390]));
     // The control: something too wide.
-    let wide = page.replace("<main>", "<main><div style='width:500px'></div>");
+    let wide = page.replace("<main>", "<main><div style='width:500px;height:9px'></div>");
     let seen = open_in(&chromium, &wide, sizes, PHONE, &[]);
     assert_ne!(seen.probe()[1], 390);
 }
@@ -390,8 +398,8 @@ fn it_is_dark_where_the_reader_s_screen_is() {
 fn every_axis_names_marks_that_stand_apart() {
     let Some(chromium) = chromium() else { return };
     // Short stretches from everywhere in a decade, of small and large figures, and long ones.
-    let stretches = (0..20).flat_map(|n| {
-        let low = 10_f64.powf(f64::from(n) / 20.0);
+    let stretches = (0..10).flat_map(|n| {
+        let low = 10_f64.powf(f64::from(n) / 10.0);
         [(1e-4, 1.0), (1e-2, 1.4), (1.0, 1.0), (1.0, 3.0), (1e4, 2.0)]
             .map(|(size, over)| (low * size, low * size * over))
     });
@@ -424,7 +432,7 @@ fn every_axis_names_marks_that_stand_apart() {
         assert_eq!(seen.faults(), [""; 0]);
         let probe = seen.probe();
         let axes = probe.as_array().unwrap();
-        assert_eq!(axes.len(), 2 * 105);
+        assert_eq!(axes.len(), 2 * 55);
         for axis in axes {
             let named = axis["names"].as_array().unwrap().len();
             assert!((2..=12).contains(&named), "{axis}");

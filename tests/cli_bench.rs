@@ -50,7 +50,7 @@ fn wrong_usage_says_what_there_is() {
     for (line, wanted) in [
         ("bench rays ball.nrrd", "takes no volumes"),
         ("bench vessels --rays 5", "no effect"),
-        ("bench rays --rays 0", "measures nothing"),
+        ("bench rays --rays 0", "is not a whole number from 1 on"),
         ("bench vessels --quick --full", "do not go together"),
         ("bench vessels --scene both.toml", "do not go together"),
         // A flag wins over the file: what is refused is another thing.

@@ -236,7 +236,11 @@ fn wrong_usage_is_refused_before_the_work() {
             2,
             "'x' is not a mode",
         ),
-        ("compare ball.nrrd -o out --repeats 0", 2, "times nothing"),
+        (
+            "compare ball.nrrd -o out --repeats 0",
+            2,
+            "is not a whole number from 1 on",
+        ),
         (
             "compare ball.nrrd -o out --configs bad.toml",
             2,

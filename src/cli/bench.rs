@@ -10,7 +10,8 @@ use crate::progress::Progress;
 use crate::render::Options;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
-use crate::scene::{FilePath, Switch, Threshold, VolumeOptions};
+use crate::scene::options::plain::one_or_more;
+use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
 use crate::stop;
 
 use super::engine::{DeviceOptions, Engine};
@@ -23,12 +24,7 @@ use super::terminal::{message, note, to_stdout};
 /// Measure the renderer: speed against error, as a table
 #[derive(clap::Args)]
 #[command(override_usage = "angioray bench EXPERIMENT [VOLUME...] [OPTIONS]")]
-#[command(before_help = list())]
-#[command(after_help = "Example:
-  angioray bench vessels
-  angioray bench vessels head.nrrd cta.mha -o results --full
-  angioray bench b1 head.nrrd --iso 50% --protocol orbit -o results
-  angioray bench traversals head_256x256x256_uint8.raw.gz")]
+#[command(after_help = after_help())]
 pub struct BenchArguments {
     #[command(flatten)]
     bench: BenchOptions,
@@ -50,6 +46,7 @@ group! {
         /// Volumes that are measured, in most experiments in place of a phantom; a headerless one
         /// by what its name says, such as head_256x256x256_uint8.raw.gz
         #[arg(value_name = "VOLUME")]
+        #[serde(deserialize_with = "one_or_more")]
         volumes: Vec<FilePath>,
 
         /// The value at which the volumes are looked at: a number, a share of the value range such
@@ -65,7 +62,7 @@ group! {
         /// Rays in the experiment rays [default: 10000000; a tenth of it with --quick, ten times as
         /// many with --full]
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
-        rays: u64,
+        rays: Count<u64>,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
         /// pictures; made where there is none. It fills as the work goes on: the same command goes
@@ -90,12 +87,26 @@ group! {
     }
 }
 
-/// The experiments, for the help.
-fn list() -> StyledStr {
+/// The experiments, how a run is gone on with, examples.
+fn after_help() -> StyledStr {
     let mut text = String::from("Experiments:");
     for experiment in EXPERIMENTS {
         text.push_str(&format!("\n  {}: {}", experiment.name, experiment.about));
     }
+    text.push_str(
+        "
+
+A run with --output that is stopped, by Ctrl-C or SIGTERM, ends with exit code 75; the same command goes
+on with it.
+
+Example:
+  angioray bench vessels
+  angioray bench vessels head.nrrd cta.mha -o results --full
+  angioray bench pareto head.nrrd -o results --quick
+  angioray bench tolerance -o results
+  angioray bench b1 head.nrrd --iso 50% --protocol orbit -o results
+  angioray bench traversals head_256x256x256_uint8.raw.gz",
+    );
     text.into()
 }
 
@@ -134,9 +145,6 @@ impl BenchArguments {
             return Err(Error::usage(format!(
                 "'--rays' has no effect in the experiment '{name}'"
             )));
-        }
-        if options.rays == Some(0) {
-            return Err(Error::usage("'--rays 0' measures nothing").hint("give a number from 1 on"));
         }
         if options.protocol.is_some() && !experiment.times_frames {
             return Err(Error::usage(format!(
@@ -191,7 +199,7 @@ impl BenchArguments {
             effort,
             protocol: options.protocol,
             specimens,
-            rays: options.rays,
+            rays: options.rays.map(Count::get),
             progress: &bars,
             store: None,
         };

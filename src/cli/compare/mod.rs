@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::measure::Peer;
 use crate::octree::Octree;
 use crate::render::{Options, Renderer};
-use crate::scene::{ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
+use crate::scene::{Count, ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};
@@ -83,10 +83,7 @@ impl CompareArguments {
             return Err(Error::usage("no folder for the comparison was named")
                 .hint("give it by '--output', or as 'output' in the scene file"));
         };
-        let repeats = compare.repeats.unwrap_or(REPEATS);
-        if repeats == 0 {
-            return Err(Error::usage("'--repeats 0' times nothing").hint("give a number from 1 on"));
-        }
+        let repeats = compare.repeats.map_or(REPEATS, Count::get);
         let configs = compare.configs.as_ref();
         let configs = configs
             .map(|FilePath(path)| Configs::read(path))

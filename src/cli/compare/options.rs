@@ -5,7 +5,7 @@ use std::str::FromStr;
 use crate::error::{Error, Result};
 use crate::scene::options::group::group;
 use crate::scene::options::plain::{one_or_more, readable};
-use crate::scene::{FilePath, Mode, SceneFile, SceneOptions};
+use crate::scene::{Count, FilePath, Mode, SceneFile, SceneOptions};
 
 group! {
     /// What is compared, and where it goes.
@@ -26,10 +26,10 @@ group! {
 
         /// How often each setting is timed, after one frame to warm up, all in turn [default: 5]
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
-        repeats: u32,
+        repeats: Count,
 
         /// Another renderer to compare with, as a command line that speaks the protocol of
-        /// scripts/peers; may be given several times
+        /// scripts/peers/README.md in angioray's source; may be given several times
         #[arg(long, value_name = "COMMAND")]
         #[serde(deserialize_with = "one_or_more")]
         peer: Vec<String>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::{Destination, FrameNames, Shard, ShardChoice};
 use crate::error::{Error, ErrorKind, Result};
-use crate::frame::{Animation, AnimationFormat, Encoding};
+use crate::frame::{Animation, AnimationFormat, Encoding, Format};
 use crate::scene::{AngleDeg, FilePath, FrameCount, OrbitAxis, Switch};
 
 use super::super::job::Job;
@@ -121,6 +121,11 @@ impl Plan {
 fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encoding)> {
     let path = job.output.path()?;
     let Some(format) = AnimationFormat::from_path(path) else {
+        Format::from_path(path).map_err(|error| {
+            error.hint(
+                "use one of .png .exr .jpg .webp .npy with %04d in the name, or .gif .apng .mp4 .webm",
+            )
+        })?;
         let encoding = job.output.encoding(path)?;
         let names = FrameNames::of(path)?;
         if options.fps.is_some() {

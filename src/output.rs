@@ -35,10 +35,6 @@ pub fn check_folder(path: &Path) -> Result<()> {
             _ => Path::new("."),
         };
     }
-    if !there.is_dir() {
-        let cause = io::Error::from(io::ErrorKind::NotADirectory);
-        return Err(Error::io(path, "make the folder", &cause));
-    }
     check_writable(&there.join("file"))
 }
 

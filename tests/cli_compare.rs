@@ -262,7 +262,7 @@ fn wrong_usage_is_refused_before_the_work() {
     }
     let Some(device) = device() else { return };
     let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 1);
-    assert!(said.contains("cannot make the folder"), "{said}");
+    assert!(said.contains("is not a folder"), "{said}");
 }
 
 #[test]

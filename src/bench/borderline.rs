@@ -39,10 +39,10 @@ impl<'a> Borderline<'a> {
     }
 
     /// Gives those pixels of a frame whose depths differ from the truth's and are
-    /// [`Verdict::Borderline`] the truth's depth.
-    pub fn excuse(&mut self, truth: &Frame, frame: &mut Frame) {
+    /// [`Verdict::Borderline`] the truth's depth; says how many.
+    pub fn excuse(&mut self, truth: &Frame, frame: &mut Frame) -> usize {
         let (Some(truths), Some(depths)) = (&truth.depth, &mut frame.depth) else {
-            return;
+            return 0;
         };
         let differing: Vec<(usize, u32)> = (0..truths.len())
             .filter(|&pixel| self.differ(truths[pixel], depths[pixel]))
@@ -61,11 +61,14 @@ impl<'a> Borderline<'a> {
         });
         let found: Vec<_> = found.collect();
         self.known.extend(found);
+        let mut excused = 0;
         for answer in differing {
             if self.known.get(&answer) == Some(&true) {
                 depths[answer.0] = truths[answer.0];
+                excused += 1;
             }
         }
+        excused
     }
 
     /// At how many pixels any has been found.

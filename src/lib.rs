@@ -26,3 +26,6 @@ pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};
+
+/// Of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

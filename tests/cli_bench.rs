@@ -74,15 +74,11 @@ fn wrong_usage_says_what_there_is() {
     }
 }
 
-/// Where the device under test can be had, its flag.
-fn device() -> Option<String> {
-    let device = common::device()?;
-    Some(format!("--device {}", device.info().id))
-}
-
 #[test]
 fn what_cannot_be_read_or_written_fails_before_the_work() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::empty();
     let said = place.refused(&format!("bench vessels none.nrrd {device}"), 1);
     assert!(said.contains("none.nrrd"), "{said}");
@@ -114,7 +110,9 @@ fn rows(markdown: &str) -> Vec<Vec<&str>> {
 
 #[test]
 fn vessels_end_in_a_table_and_leave_it_as_files() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let line = format!("bench vessels ball.nrrd --quick -o out/first {device}");
     let printed = place.done(&line);
@@ -167,7 +165,9 @@ fn vessels_end_in_a_table_and_leave_it_as_files() {
 
 #[test]
 fn traversals_of_a_volume_give_the_same_bytes() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let printed = place.done(&format!("bench traversals ball.nrrd --quick {device}"));
     let rows = rows(&printed);
@@ -178,7 +178,9 @@ fn traversals_of_a_volume_give_the_same_bytes() {
 
 #[test]
 fn the_other_experiments_end_in_tables() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::empty();
     let of = |line: &str| place.done(&format!("bench {line} --quick {device}"));
     let convergence = of("convergence");

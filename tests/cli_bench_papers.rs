@@ -7,12 +7,6 @@ mod common;
 use cli_place::Place;
 use serde_json::Value;
 
-/// Where the device under test can be had, its flag.
-fn device() -> Option<String> {
-    let device = common::device()?;
-    Some(format!("--device {}", device.info().id))
-}
-
 /// What an experiment left, run on a thin vessel tree of 40³ voxels.
 struct Done {
     place: Place,
@@ -25,7 +19,7 @@ fn done(experiment: &str) -> Option<Done> {
 
 /// The same on another phantom of that size, and with flags.
 fn done_of(experiment: &str, phantom: &str, flags: &str) -> Option<Done> {
-    let device = device()?;
+    let device = common::device_flag()?;
     let place = Place::empty();
     place.done(&format!("phantom {phantom} -o tree.nrrd --size 40"));
     place.done(&format!(
@@ -243,7 +237,9 @@ fn b18_draws_four_pictures_of_one_volume_that_differ() {
 
 #[test]
 fn a_named_iso_value_is_where_the_volume_is_looked_at() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let hits = |iso: &str| {
         let line = format!("bench b17 ball.nrrd --quick --iso {iso} -o out {device}");

@@ -12,12 +12,6 @@ use std::time::{Duration, Instant};
 use cli_place::{Place, stderr};
 use serde_json::Value;
 
-/// Where the device under test can be had, its flag.
-fn device() -> Option<String> {
-    let device = common::device()?;
-    Some(format!("--device {}", device.info().id))
-}
-
 /// Four volumes, so that a run has twenty units of work: many more are left than a fast device ends
 /// between a look into the journal and the signal's arrival.
 fn place() -> Place {
@@ -82,7 +76,9 @@ fn lasting(rows: &[Value]) -> Vec<String> {
 
 #[test]
 fn a_stopped_run_goes_on_where_it_was() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = place();
     let line = |folder: &str| format!("bench traversals {VOLUMES} --quick -o {folder} {device}");
 
@@ -127,7 +123,9 @@ fn a_stopped_run_goes_on_where_it_was() {
 
 #[test]
 fn what_another_run_has_left_is_refused_in_a_sentence() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = place();
     let line = format!("bench traversals {VOLUMES} --quick -o out {device}");
     let (code, said) = stopped(&place, &line, "out", 1, "TERM");
@@ -203,7 +201,9 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
 
 #[test]
 fn rays_that_are_stopped_go_on_and_end_as_if_they_never_were() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::empty();
     let line = |folder: &str| format!("bench rays --rays 300000 -o {folder} {device}");
     let (code, said) = stopped(&place, &line("out"), "out", 1, "TERM");
@@ -226,7 +226,9 @@ fn rays_that_are_stopped_go_on_and_end_as_if_they_never_were() {
 
 #[test]
 fn what_an_older_run_has_found_is_not_taken_for_this_ones() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = place();
     place.done(&format!("bench convergence -o out {device}"));
     assert!(place.path("out/report.html").exists());
@@ -242,7 +244,9 @@ fn what_an_older_run_has_found_is_not_taken_for_this_ones() {
 
 #[test]
 fn a_line_torn_by_a_crash_is_measured_again() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = place();
     let line = format!("bench traversals {VOLUMES} --quick -o out {device}");
     // No signal that could be caught.

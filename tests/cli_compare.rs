@@ -9,12 +9,6 @@ use std::fs;
 use cli_place::{Place, pixels, stderr};
 use serde_json::Value;
 
-/// Where the device under test can be had, its flag.
-fn device() -> Option<String> {
-    let device = common::device()?;
-    Some(format!("--device {}", device.info().id))
-}
-
 fn rows(results: &Value) -> &Vec<Value> {
     results["rows"].as_array().unwrap()
 }
@@ -30,7 +24,9 @@ const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 2 --iso 100
 
 #[test]
 fn every_setting_is_judged_timed_and_pictured() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let printed = place.done(&format!("{SMALL} --modes iso,mip,dvr {device}"));
     assert!(printed.starts_with("| mode | setting |"), "{printed}");
@@ -100,7 +96,9 @@ fn every_setting_is_judged_timed_and_pictured() {
 
 #[test]
 fn the_figures_are_those_of_the_pictures() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let line = SMALL.replace(" --iso 100", "");
     place.done(&format!("{line} --modes mip {device}"));
@@ -127,7 +125,9 @@ fn the_figures_are_those_of_the_pictures() {
 
 #[test]
 fn the_reference_is_computed_once() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     let line = format!("{SMALL} --modes iso {device}");
     place.done(&line);
@@ -151,7 +151,9 @@ fn the_reference_is_computed_once() {
 
 #[test]
 fn settings_come_from_a_file_and_from_flags() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     place.write(
         "steps.toml",
@@ -188,7 +190,9 @@ fn settings_come_from_a_file_and_from_flags() {
 
 #[test]
 fn what_is_done_before_a_failure_is_kept() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     fs::create_dir_all(place.path("out/pictures/mip-02-step-2.png")).unwrap();
     let output = place.run(&format!("{SMALL} --modes iso,mip {device}"));
@@ -260,7 +264,9 @@ fn wrong_usage_is_refused_before_the_work() {
         let said = place.refused(line, code);
         assert!(said.contains(wanted), "{line}: {said}");
     }
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 1);
     assert!(said.contains("is not a folder"), "{said}");
 }

@@ -11,11 +11,6 @@ use angioray::frame::read_metadata;
 use cli_place::{Place, pixels, stderr};
 use serde_json::Value;
 
-fn device() -> Option<String> {
-    let device = common::device()?;
-    Some(format!("--device {}", device.info().id))
-}
-
 const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 1 --cache off";
 
 /// A peer that draws black, 40 pixels a side, and whose second setting it dies of.
@@ -49,7 +44,9 @@ fn rows(place: &Place) -> Vec<Value> {
 
 #[test]
 fn another_renderer_has_a_row_like_ours() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = with_peer(1);
     let printed = place.done(&format!("{SMALL} --modes mip --scene peers.toml {device}"));
     assert!(printed.contains("black 9: night"), "{printed}");
@@ -74,7 +71,9 @@ fn another_renderer_has_a_row_like_ours() {
 
 #[test]
 fn a_peer_that_dies_costs_its_own_rows() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = with_peer(1);
     let line = format!("{SMALL} --modes iso --iso 100 --scene peers.toml {device}");
     let output = place.run(&line);
@@ -99,7 +98,9 @@ fn a_peer_that_dies_costs_its_own_rows() {
 
 #[test]
 fn what_a_bound_chooses_takes_part_and_is_stored() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     place.write("one.toml", "[[setting]]\nname = 'coarse'\nstep = 4\n");
     let output = place.run(&format!(
@@ -130,7 +131,9 @@ fn what_a_bound_chooses_takes_part_and_is_stored() {
 
 #[test]
 fn a_picture_says_how_to_make_it_again() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     place.write(
         "one.toml",
@@ -167,7 +170,9 @@ fn a_picture_says_how_to_make_it_again() {
 
 #[test]
 fn names_that_would_be_taken_for_another_are_refused() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = with_peer(2);
     for (file, settings) in [
         (
@@ -214,7 +219,9 @@ fn names_that_would_be_taken_for_another_are_refused() {
 
 #[test]
 fn an_earlier_comparison_leaves_nothing_behind() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     place.write("one.toml", "[[setting]]\nname = 'a'\nstep = 1\n");
     let line = format!("{SMALL} --configs one.toml {device}");
@@ -228,7 +235,9 @@ fn an_earlier_comparison_leaves_nothing_behind() {
 
 #[test]
 fn a_flat_volume_is_compared_too() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::empty();
     place.write(
         "flat.nrrd",
@@ -248,7 +257,9 @@ fn a_flat_volume_is_compared_too() {
 
 #[test]
 fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
-    let Some(device) = device() else { return };
+    let Some(device) = common::device_flag() else {
+        return;
+    };
     let place = Place::with_ball();
     fs::create_dir(place.path("home")).unwrap();
     place.write("home/angioray", "");

@@ -35,6 +35,7 @@ pub use verdict::{Judge, Met, Verdict};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::Wanted;
 use crate::gpu::Device;
@@ -83,7 +84,7 @@ impl Bench<'_> {
         let volumes = self.specimens.iter().map(Specimen::identity);
         let told = |choice: Option<String>| choice.unwrap_or_else(|| "the default".into());
         Ok(Run(vec![
-            ("version", env!("CARGO_PKG_VERSION").into()),
+            ("version", VERSION.into()),
             ("program", hash(program)),
             ("kernels", hash(kernels)),
             ("experiment", self.experiment.name.into()),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::report::{Gallery, Picture, Report, Section};
 
@@ -84,7 +85,7 @@ fn facts(bench: &Bench, conduct: Conduct) -> Vec<(String, String)> {
         ("device", device.name.clone()),
         ("platform", device.platform.clone()),
         ("driver", device.driver.clone()),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", VERSION.to_owned()),
     ]);
     let facts = facts.into_iter();
     facts

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::{self, Encoding, Format};
 use crate::output::{check_writable, write_bytes};
@@ -63,7 +64,7 @@ impl Results {
         let device = bench.device.info();
         let conduct = outcome.conduct;
         let document = json!({
-            "version": env!("CARGO_PKG_VERSION"),
+            "version": VERSION,
             "command": "bench",
             "command_line": bench.command,
             "experiment": bench.experiment.name,

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 use std::str::FromStr;
 use std::time::Instant;
 
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::Device;
@@ -114,6 +115,10 @@ pub struct Rendered {
 }
 
 impl Engine {
+    /// What the options name: the reference, or a device.
+    ///
+    /// # Errors
+    /// Usage: work groups for the reference. No device of that name, or none at all.
     pub fn open(options: &DeviceOptions) -> Result<Self> {
         let work_group = options.work_group;
         match &options.device {
@@ -247,7 +252,7 @@ fn reference_stats() -> DeviceStats {
     DeviceStats {
         name: "reference".into(),
         platform: "host".into(),
-        driver: concat!("angioray ", env!("CARGO_PKG_VERSION")).into(),
+        driver: format!("angioray {VERSION}"),
     }
 }
 

@@ -39,6 +39,8 @@ pub struct Source {
 }
 
 impl Source {
+    /// What the options say of the volume's file, checked as far as can be without reading it.
+    ///
     /// # Errors
     /// No volume named; a layout or leaf edge that makes no sense.
     pub fn of(options: &VolumeOptions) -> Result<Self> {

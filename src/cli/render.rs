@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::VERSION;
 use crate::error::Result;
 use crate::frame::{self, Wanted};
 use crate::measure::Counts;
@@ -12,7 +13,7 @@ use super::engine::Engine;
 use super::job::JobArguments;
 use super::load::ms_since;
 use super::progress::Bars;
-use super::stats::{self, Memory, Stats, Times, VERSION, VolumeStats};
+use super::stats::{self, Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 use super::tolerance::choose;
 

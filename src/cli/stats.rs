@@ -13,9 +13,6 @@ use crate::scene::SceneOptions;
 use crate::tolerance::ToleranceStats;
 use crate::volume::Volume;
 
-/// Of this program.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-
 #[derive(Serialize)]
 pub struct Stats<'a> {
     pub version: &'static str,

@@ -47,14 +47,17 @@ impl Folder {
             .map_err(|cause| Error::io(&pictures, "make the folder", &cause))
     }
 
+    /// The rows and all that is beside them, for programs.
     pub fn json(&self) -> PathBuf {
         self.path.join("results.json")
     }
 
+    /// The rows' figures.
     pub fn csv(&self) -> PathBuf {
         self.path.join("results.csv")
     }
 
+    /// The page.
     pub fn report(&self) -> PathBuf {
         self.path.join("report.html")
     }

@@ -22,6 +22,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::error::{ErrorMap, figures};
 use crate::frame::{Frame, Wanted};
@@ -55,8 +56,6 @@ pub struct Comparison<'a> {
     pub folder: Folder,
     /// What results say beside what comes out, for programs.
     pub about: Value,
-    /// Of the program, for the pictures' metadata.
-    pub version: &'static str,
     pub progress: &'a dyn Progress,
 }
 
@@ -206,7 +205,7 @@ impl Comparison<'_> {
     fn keep_reference(&self, of_mode: &ModeSettings, frame: &Frame) -> Result<report::Picture> {
         let name = Folder::picture_name(of_mode.mode, 0, contender::REFERENCE);
         let scene = of_mode.resolved.options.to_toml()?;
-        let metadata: &Metadata = &[("scene", &scene), ("version", self.version)];
+        let metadata: &Metadata = &[("scene", &scene), ("version", VERSION)];
         let written = pictures::write(&self.folder, &name, frame, metadata)?;
         Ok(report::Picture {
             label: contender::REFERENCE.into(),
@@ -273,7 +272,7 @@ impl Comparison<'_> {
             None => figures(truth, frame, scale)?,
         };
         let scene = seen.options.to_toml()?;
-        let metadata: &Metadata = &[("scene", &scene), ("version", self.version)];
+        let metadata: &Metadata = &[("scene", &scene), ("version", VERSION)];
         let written = pictures::write(&self.folder, &name, frame, metadata)?;
         let map = pictures::error_map(truth, frame, &figures, scale)?;
         let (error_png, error_exr) = pictures::write_map(&self.folder, &name, &map)?;

@@ -79,6 +79,7 @@ impl From<&Times> for Spread {
     }
 }
 
+/// A pass, and what it took on the device's clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PassMs {
     pub name: String,

@@ -23,6 +23,7 @@ impl Times {
         self.rounds.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
+    /// What half of the rounds do not exceed, ms.
     pub fn median_ms(&self) -> f64 {
         median_of(self.rounds.iter().copied())
     }
@@ -40,6 +41,7 @@ impl Times {
         self
     }
 
+    /// How many rounds there were.
     pub fn repeats(&self) -> usize {
         self.rounds.len()
     }

@@ -48,7 +48,7 @@ pub fn render(
 ) -> Result<Frame> {
     let tracer = Tracer::new(volume, scene)?;
     let (size, width) = (scene.size, scene.size.width());
-    let mut frame = empty_frame(scene, wanted);
+    let mut frame = Frame::blank(size, wanted);
     progress.begin("reference", u64::from(size.height()));
     for first in (0..size.height()).step_by(BAND_ROWS as usize) {
         let rows = BAND_ROWS.min(size.height() - first);
@@ -60,8 +60,8 @@ pub fn render(
                 tracer.cast(scene.camera.ray(size, x_px, y_px))
             })
             .collect();
-        for sight in &band {
-            push(&mut frame, sight, scene);
+        for (sight, pixel) in band.iter().zip((first * width) as usize..) {
+            fill(&mut frame, pixel, sight, scene);
         }
         progress.advance(u64::from(rows));
     }
@@ -79,44 +79,26 @@ fn certificate(sight: &Sight, scene: &Scene) -> Certificate {
     }
 }
 
-/// A frame with the wanted planes, each with room for its pixels.
-fn empty_frame(scene: &Scene, wanted: Wanted) -> Frame {
-    fn plane<T>(wanted: bool, pixels: usize) -> Option<Vec<T>> {
-        wanted.then(|| Vec::with_capacity(pixels))
-    }
-    let pixels = scene.size.pixels();
-    Frame {
-        size: scene.size,
-        color: Vec::with_capacity(pixels),
-        display: plane(wanted.display, pixels),
-        depth: plane(wanted.depth, pixels),
-        normal: plane(wanted.normal, pixels),
-        value: plane(wanted.value, pixels),
-        steps: plane(wanted.counters, pixels),
-        nodes: plane(wanted.counters, pixels),
-        kind: plane(wanted.kind, pixels),
-        certificate: plane(wanted.certificate, pixels),
-    }
-}
-
-/// Appends one pixel to every plane.
-fn push(frame: &mut Frame, sight: &Sight, scene: &Scene) {
-    fn append<T>(plane: &mut Option<Vec<T>>, value: impl FnOnce() -> T) {
+/// Fills one pixel of every plane that is there.
+fn fill(frame: &mut Frame, pixel: usize, sight: &Sight, scene: &Scene) {
+    fn set<T>(plane: &mut Option<Vec<T>>, pixel: usize, value: impl FnOnce() -> T) {
         if let Some(plane) = plane {
-            plane.push(value());
+            plane[pixel] = value();
         }
     }
-    frame.color.push(sight.color.map(|c| c as f32));
-    append(&mut frame.display, || {
+    frame.color[pixel] = sight.color.map(|c| c as f32);
+    set(&mut frame.display, pixel, || {
         display(sight.color, &scene.tone).map(|c| c as f32)
     });
-    append(&mut frame.depth, || sight.depth_mm as f32);
-    append(&mut frame.normal, || {
+    set(&mut frame.depth, pixel, || sight.depth_mm as f32);
+    set(&mut frame.normal, pixel, || {
         sight.normal_world.to_array().map(|c| c as f32)
     });
-    append(&mut frame.value, || sight.value as f32);
-    append(&mut frame.steps, || sight.cells);
-    append(&mut frame.nodes, || 0);
-    append(&mut frame.kind, || sight.kind as u32);
-    append(&mut frame.certificate, || certificate(sight, scene) as u32);
+    set(&mut frame.value, pixel, || sight.value as f32);
+    set(&mut frame.steps, pixel, || sight.cells);
+    set(&mut frame.nodes, pixel, || 0);
+    set(&mut frame.kind, pixel, || sight.kind as u32);
+    set(&mut frame.certificate, pixel, || {
+        certificate(sight, scene) as u32
+    });
 }

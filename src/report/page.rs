@@ -7,6 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::content::{Report, Section};
 use super::{bars, gallery, scatter};
+use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
@@ -59,7 +60,7 @@ impl Report {
                     meta http-equiv="Content-Security-Policy" content=(POLICY);
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="color-scheme" content="light dark";
-                    meta name="generator" content=(concat!("angioray ", env!("CARGO_PKG_VERSION")));
+                    meta name="generator" content={ "angioray " (VERSION) };
                     title { (self.title) }
                     script { (PreEscaped(FAULTS)) }
                     @for style in STYLES { style { (PreEscaped(style)) } }
@@ -69,7 +70,7 @@ impl Report {
                     (self.contents())
                     main { @for section in &sections { (section) } }
                     footer {
-                        "Made by angioray " (env!("CARGO_PKG_VERSION"))
+                        "Made by angioray " (VERSION)
                         ". This page is one file and loads nothing from elsewhere."
                     }
                     script { (PreEscaped(script())) }

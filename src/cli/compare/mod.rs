@@ -18,7 +18,6 @@ use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};
 use super::progress::Bars;
 use super::scene::SceneArgument;
-use super::stats::VERSION;
 use super::terminal::{message, note, to_stdout};
 use options::{CompareOptions, Named};
 use page::{about, report};
@@ -146,7 +145,6 @@ impl CompareArguments {
             repeats: repeats as usize,
             about: about(&device, &source, &loaded, octree_ms, repeats),
             folder,
-            version: VERSION,
             progress: &bars,
         };
         comparison.check(&peers)?;

@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use crate::VERSION;
 use crate::compare::{Compared, Comparison};
 use crate::gpu::Device;
 use crate::measure::Peer;
@@ -9,7 +10,7 @@ use crate::report::Report;
 
 use super::super::load::{Loaded, Source};
 use super::super::repeat::command_line;
-use super::super::stats::{DeviceStats, VERSION, VolumeStats};
+use super::super::stats::{DeviceStats, VolumeStats};
 
 /// What the results say beside their rows.
 pub fn about(

@@ -5,6 +5,7 @@ mod options;
 mod plan;
 mod stats;
 
+use crate::VERSION;
 use crate::batch::{Destination, Provenance};
 use crate::error::Result;
 use crate::scene::Orbit;
@@ -14,7 +15,6 @@ use super::engine::Engine;
 use super::job::JobArguments;
 use super::progress::Bars;
 use super::render::gradient_note;
-use super::stats::VERSION;
 use super::terminal::{message, note};
 use making::{Made, Making};
 use options::OrbitOptions;

@@ -1,5 +1,6 @@
 //! The statistics of an orbit (`--stats`): of every frame that was made, and of all together.
 
+use crate::VERSION;
 use crate::batch::Written;
 use crate::error::Result;
 use crate::frame::{self, Frame};
@@ -10,8 +11,7 @@ use crate::tolerance::{Cost, ToleranceStats};
 
 use super::super::engine::Rendered;
 use super::super::stats::{
-    self, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times, VERSION,
-    VolumeStats,
+    self, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times, VolumeStats,
 };
 
 use super::making::{Made, Making};

@@ -16,6 +16,7 @@ pub enum Entry {
 }
 
 impl Entry {
+    /// The picture minus the reference, where both have something.
     pub fn difference(self) -> Option<f64> {
         match self {
             Self::Difference(difference) => Some(difference),

@@ -40,6 +40,7 @@ impl ErrorMetric {
         Self::Value,
     ];
 
+    /// As users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rmse => "rmse",

@@ -39,6 +39,8 @@ impl Setting {
         Self::new(name, options)
     }
 
+    /// From options that say nothing but how rays are followed.
+    ///
     /// # Errors
     /// Usage: an option says what is seen rather than how.
     pub fn new(name: impl Into<String>, options: SceneOptions) -> Result<Self> {

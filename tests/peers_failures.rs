@@ -39,6 +39,24 @@ fn planes_that_are_none_are_refused() {
 }
 
 #[test]
+fn a_setting_that_no_line_of_ours_can_name_is_refused() {
+    let hello = |name: &str| {
+        let settings = format!(r#"[{{"name":"{name}","modes":["mip"]}}]"#);
+        Fake::new(&format!(
+            "printf '%s\\n' '{{\"peer\":\"fake\",\"version\":\"1\",\"device\":\"none\",\"settings\":{settings}}}'\ncat >/dev/null\n"
+        ))
+    };
+    for name in ["two\\nlines", &"long".repeat(200)] {
+        let said = hello(name).start().err().unwrap().to_string();
+        assert!(said.contains("control character"), "{said}");
+        assert!(!said.contains('\n'), "{said}");
+    }
+    // The control: any other goes back as it was said.
+    let peer = hello("step 0.5, \u{fc}ber").start().unwrap();
+    assert_eq!(peer.settings("mip"), ["step 0.5, über"]);
+}
+
+#[test]
 fn a_peer_that_babbles_is_quoted() {
     let babbles = r#"*'"render"'*) echo 'Warning: no depth buffer' ;;"#;
     assert_eq!(

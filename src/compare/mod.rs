@@ -187,10 +187,7 @@ impl Comparison<'_> {
             subject: &self.subject,
             options: &of_mode.resolved.options.what(),
             bound,
-            wanted: Wanted {
-                display: true,
-                ..Wanted::default()
-            },
+            wanted: Wanted::DISPLAY,
             seed: SEED,
             elsewhere: &[],
         };

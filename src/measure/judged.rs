@@ -82,10 +82,7 @@ pub struct FrameTime {
 /// # Errors
 /// As [`Renderer::render`].
 pub fn time(renderer: &mut Renderer, scene: &Scene) -> Result<FrameTime> {
-    let wanted = Wanted {
-        display: true,
-        ..Wanted::default()
-    };
+    let wanted = Wanted::DISPLAY;
     renderer.precompute(scene, wanted)?;
     let (began, used) = (Instant::now(), processor_ms());
     let rendering = renderer.render(scene, wanted)?;

@@ -15,16 +15,28 @@ pub fn processor_ms() -> Option<f64> {
 
 #[cfg(all(test, unix))]
 mod tests {
-    use std::time::Duration;
+    use rustix::time::{ClockId, clock_gettime};
 
     use super::*;
 
+    /// Works until this thread has used 20 ms; what it has used.
+    fn work() -> f64 {
+        let used = || {
+            let used = clock_gettime(ClockId::ThreadCPUTime);
+            used.tv_sec as f64 * 1e3 + used.tv_nsec as f64 / 1e6
+        };
+        let began = used();
+        while used() < began + 20.0 {}
+        used() - began
+    }
+
     #[test]
-    fn work_uses_it_and_waiting_does_not() {
+    fn it_is_that_of_all_threads_together() {
         let began = processor_ms().unwrap();
-        while processor_ms().unwrap() < began + 20.0 {}
-        let worked = processor_ms().unwrap();
-        std::thread::sleep(Duration::from_millis(20));
-        assert!(processor_ms().unwrap() - worked < 10.0);
+        let other = std::thread::spawn(work);
+        let own = work();
+        let both = own + other.join().unwrap();
+        // One thread's alone would be half of it.
+        assert!(processor_ms().unwrap() - began >= both);
     }
 }

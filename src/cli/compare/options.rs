@@ -109,6 +109,7 @@ impl Named {
         }
     }
 
+    /// In the order in which they are named; nothing where none is.
     pub fn modes(self) -> Option<Vec<Mode>> {
         let Self(several, one) = self;
         let several = several.map(|Modes(modes)| modes);

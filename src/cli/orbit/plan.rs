@@ -12,8 +12,10 @@ use super::super::outputs;
 use super::super::terminal::note;
 use super::options::OrbitOptions;
 
+/// What the flags and the scene file ask for.
 pub struct Plan {
     pub frames: FrameCount,
+    /// By which the camera turns in all.
     pub degrees: f64,
     pub axis: OrbitAxis,
     pub resume: bool,

@@ -1,6 +1,7 @@
 //! What is said between this program and a peer; scripts/peers/README.md tells it to those who
 //! write one.
 
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
@@ -261,9 +262,21 @@ fn optional_line<'de, D: Deserializer<'de>>(
     Option::<String>::deserialize(from).map(|text| text.map(|text| quotable(&text)))
 }
 
+/// A setting's name goes back to the peer, so that it is as it was said or refused.
+fn name<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<String, D::Error> {
+    let name = String::deserialize(from)?;
+    match quotable(&name) == name {
+        true => Ok(name),
+        false => Err(D::Error::custom(format!(
+            "the setting '{}' has too long a name, or a control character in it",
+            quotable(&name)
+        ))),
+    }
+}
+
 #[derive(Deserialize)]
 pub(super) struct OfferedSetting {
-    #[serde(deserialize_with = "line")]
+    #[serde(deserialize_with = "name")]
     pub name: String,
     pub modes: Vec<String>,
 }

@@ -48,6 +48,7 @@ pub enum Mode {
     Mean,
     Dvr,
 }
+
 impl Mode {
     /// In the order in which help and tables name them.
     pub const ALL: [Self; 6] = [

@@ -16,11 +16,11 @@
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
 // node, its CLASS_*. Writes color, premultiplied linear light; with COUNTERS the times the medium was
 // looked at and the nodes tested.
-#include "lib/cells.clh"
-#include "lib/clip.clh"
-#include "lib/gather.clh"
-#include "lib/medium.clh"
-#include "lib/preintegrated.clh"
+#include "old/cells.clh"
+#include "old/clip.clh"
+#include "old/gather.clh"
+#include "old/medium.clh"
+#include "old/preintegrated.clh"
 
 #ifndef ADAPTIVE_HALVINGS
 #error "ADAPTIVE_HALVINGS, how often a piece of a cell is halved, is given by the host"

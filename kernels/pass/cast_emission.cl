@@ -12,11 +12,11 @@
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
 // node, its CLASS_* and average. Writes color, premultiplied linear light; with COUNTERS the samples
 // taken and the nodes tested.
-#include "lib/clip.clh"
-#include "lib/gather.clh"
-#include "lib/medium.clh"
-#include "lib/octree.clh"
-#include "lib/preintegrated.clh"
+#include "old/clip.clh"
+#include "old/gather.clh"
+#include "old/medium.clh"
+#include "old/octree.clh"
+#include "old/preintegrated.clh"
 
 // What a ray looks at.
 typedef struct {

@@ -11,9 +11,9 @@
 // (CLASS_BELOW: nowhere above `floor`). Writes per pixel kind (surface where the ray meets the
 // volume) and value (stored units; 0 where it does not); with LAYERS depth (mm from the eye; +inf for
 // the mean); with COUNTERS the samples taken and the nodes tested.
-#include "lib/clip.clh"
-#include "lib/octree.clh"
-#include "lib/peak.clh"
+#include "old/clip.clh"
+#include "old/octree.clh"
+#include "old/peak.clh"
 
 #if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
 #error "PROJECTION, which value is wanted, is given by the host"

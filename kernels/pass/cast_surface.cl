@@ -10,10 +10,10 @@
 // hit_mm (from the base plane along the ray; +inf: none) and kind; with LAYERS depth (mm from the
 // eye) and value at the hit (stored units; 0 without a hit); with COUNTERS the samples taken and the
 // nodes tested.
-#include "lib/clip.clh"
-#include "lib/octree.clh"
-#include "lib/peak.clh"
-#include "lib/refine.clh"
+#include "old/clip.clh"
+#include "old/octree.clh"
+#include "old/peak.clh"
+#include "old/refine.clh"
 
 kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                          const global float4 *clip_planes, uint clip_count,

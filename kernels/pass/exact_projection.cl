@@ -12,8 +12,8 @@
 // `floor`). Writes per pixel kind (surface where the ray meets the volume) and value (stored units;
 // 0 where it does not); with LAYERS depth (mm from the eye; +inf for the mean); with COUNTERS the
 // cells read and the nodes tested.
-#include "lib/cells.clh"
-#include "lib/clip.clh"
+#include "old/cells.clh"
+#include "old/clip.clh"
 
 #if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
 #error "PROJECTION, which value is wanted, is given by the host"

@@ -25,41 +25,34 @@ kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_c
 #endif
 )
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    Ray ray = pixel_ray(rays, i, j);
+    Pixels pixels = tile_pixels(rays);
+    Ray ray = pixel_ray(rays, pixels);
     Interval interval = volume_interval(volume, ray);
     clip_interval(&interval, clip_planes, clip_count, ray);
-    Crossing found;
-    found.t = INFINITY;
-    found.kind = KIND_NOTHING;
-    found.certificate = only_touches(interval) ? CERTIFICATE_UNDECIDED : CERTIFICATE_MISS;
-    float hit_value = 0.0f;
-    uint cells_read = 0u;
-    uint nodes_tested = 0u;
-    if (interval.enter <= interval.exit) {
-        found = first_crossing(voxels, node_class, levels, volume, ray, interval, cast, &cells_read, &nodes_tested);
-#if LAYERS
-        if (found.kind != KIND_NOTHING)
-            hit_value = field_at(voxels, volume, clamp_to_domain(volume, ray_at(ray, interval.enter + found.t).high));
-#endif
-    }
+    Mask meets = pixels.inside & interval.enter <= interval.exit;
+    Ints cells_read = INTS(0);
+    Ints nodes_tested = INTS(0);
+    Crossing found = first_crossing(voxels, node_class, levels, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
+    Floats t = interval.enter + found.t;
 
-    hit_mm[pixel] = interval.enter + found.t;
-    kind[pixel] = found.kind;
+    SCATTER(pixels.inside, hit_mm, pixels.index, t);
+    SCATTER(pixels.inside, kind, pixels.index, found.kind);
 #if LAYERS
-    depth[pixel] = ray.base_mm + (interval.enter + found.t);
-    value[pixel] = hit_value;
+    Mask hit = found.kind != KIND_NOTHING;
+    Pair3 p = ray_at(ray, hit ? t : interval.enter);
+    Floats3 at = {p.x.high, p.y.high, p.z.high};
+    Floats seen = hit ? field_at(voxels, volume, clamp_to_domain(volume, at)) : FLOATS(0.0f);
+    Floats depth_mm = ray.base_mm + t;
+    SCATTER(pixels.inside, depth, pixels.index, depth_mm);
+    SCATTER(pixels.inside, value, pixels.index, seen);
 #endif
 #if CERTIFICATE
-    certificate[pixel] = found.certificate;
+    Ints missed = only_touches(interval) ? INTS(CERTIFICATE_UNDECIDED) : INTS(CERTIFICATE_MISS);
+    Ints proven = meets ? found.certificate : missed;
+    SCATTER(pixels.inside, certificate, pixels.index, proven);
 #endif
 #if COUNTERS
-    steps[pixel] = cells_read;
-    nodes[pixel] = nodes_tested;
+    SCATTER(pixels.inside, steps, pixels.index, cells_read);
+    SCATTER(pixels.inside, nodes, pixels.index, nodes_tested);
 #endif
 }

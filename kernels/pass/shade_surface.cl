@@ -1,8 +1,8 @@
 // The colour of each hit surface: linear light, premultiplied, opaque where something was hit.
 //
 // Reads kind of cast_surface and, with SHADED, normal of surface_normal. Writes color.
-#include "lib/ray.clh"
-#include "lib/shade.clh"
+#include "old/ray.clh"
+#include "old/shade.clh"
 
 kernel void shade_surface(RayGrid rays, Shading shading, const global uint *kind
 #if SHADED

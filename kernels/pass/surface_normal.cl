@@ -3,8 +3,8 @@
 //
 // Reads the voxels or, with GRADIENT_PRECOMPUTED, directions of gradients, hit_mm and kind of cast_surface, and the clip planes (index space). Writes
 // normal (w = 0).
-#include "lib/clip.clh"
-#include "lib/gradient.clh"
+#include "old/clip.clh"
+#include "old/gradient.clh"
 
 kernel void surface_normal(
 #if GRADIENT == GRADIENT_PRECOMPUTED

@@ -3,7 +3,7 @@
 //
 // Reads color. Writes display (sRGB-encoded 0..1, opaque).
 #include "lib/color.clh"
-#include "lib/ray.clh"
+#include "old/ray.clh"
 
 kernel void tone_curve(RayGrid rays, Tone tone, const global float4 *color, global float4 *display)
 {

@@ -3,7 +3,7 @@
 //
 // Reads kind and value of cast_maximum; the window is in stored units like it. Writes color.
 #include "lib/color.clh"
-#include "lib/ray.clh"
+#include "old/ray.clh"
 
 kernel void window_value(RayGrid rays, float2 window, const global uint *kind, const global float *value,
                          global float4 *color)

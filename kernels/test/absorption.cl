@@ -1,5 +1,5 @@
 // The absorption per mm of each opacity.
-#include "lib/transfer.clh"
+#include "old/transfer.clh"
 
 kernel void absorption(uint count, float unit_length_mm, float most_absorption,
                        const global float *opacities, global float *per_mm)

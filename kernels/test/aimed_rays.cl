@@ -3,7 +3,7 @@
 //
 // Reads the voxels, per octree node its CLASS_*, and per ray its origin and direction. Writes hit
 // (in lengths of the direction from the origin; +inf: none), KIND_* and CERTIFICATE_*.
-#include "lib/crossing.clh"
+#include "old/crossing.clh"
 
 kernel void aimed_rays(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
                        VolumeGrid volume, SurfaceCast cast, uint count, uint width,

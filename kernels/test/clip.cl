@@ -1,7 +1,7 @@
 // Where each ray, its direction per mm, is inside a volume of `sizes` voxels and on the kept side
 // of all of its own clip planes, those from `sizes[i].w` on, `counts[i]` of them: `entry` holds
 // the axis or plane that it enters by and whether it enters by one at all.
-#include "lib/clip.clh"
+#include "old/clip.clh"
 
 kernel void clip(uint count, const global uint4 *sizes, const global float4 *planes, const global uint *counts,
                  const global float4 *origins, const global float4 *dirs,

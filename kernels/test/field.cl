@@ -1,5 +1,5 @@
 // The field at each point of a volume of `size` voxels, and its slope along each direction.
-#include "lib/field.clh"
+#include "old/field.clh"
 
 kernel void field(uint count, uint4 size, const global VOXEL *voxels, const global float4 *points,
                   const global float4 *dirs, global float *values, global float2 *with_slope)

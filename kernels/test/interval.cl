@@ -1,6 +1,6 @@
 // Where each ray, its direction per mm, is inside a volume of `sizes` voxels: `entry` holds the
 // axis of the face that it enters by and whether it enters by a face at all.
-#include "lib/ray.clh"
+#include "old/ray.clh"
 
 kernel void interval(uint count, const global uint4 *sizes, const global float4 *origins, const global float4 *dirs,
                      global float2 *inside, global uint4 *entry)

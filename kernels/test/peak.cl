@@ -1,5 +1,5 @@
 // The peak between two samples of each ray: rays hold the ends' t, the sign and the goal.
-#include "lib/peak.clh"
+#include "old/peak.clh"
 
 kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 start, float4 dir, float length_mm, uint first,
                  const global float4 *rays, global float4 *peaks, global uint *found)

@@ -1,7 +1,7 @@
 // The sample lattice of each ray and its spans of one node: per ray, at most `room` each of
 // points, their cells, and spans (first sample, end, whether the cells either side of its beginning
 // touch), and of `lasts`, the cells of the spans' last samples.
-#include "lib/octree.clh"
+#include "old/octree.clh"
 
 kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
                   const global float4 *origins, const global float4 *dirs,

@@ -1,5 +1,5 @@
 // The transfer function at each value.
-#include "lib/transfer.clh"
+#include "old/transfer.clh"
 
 kernel void transfer(uint count, uint knots, const global float *knot_values, const global float4 *knot_colors,
                      const global float *values, global float4 *colors)

@@ -49,6 +49,8 @@ pub struct Pass {
     name: &'static str,
     kernel: Kernel,
     signature: Vec<Parameter>,
+    /// Pixels along x and y that one work-item takes.
+    tile: [usize; 2],
 }
 
 impl Pass {
@@ -69,7 +71,15 @@ impl Pass {
             name,
             kernel,
             signature,
+            tile: [1, 1],
         })
+    }
+
+    /// One work-item for a tile of pixels along x and y.
+    #[must_use]
+    pub fn with_tile(mut self, tile: [usize; 2]) -> Self {
+        self.tile = tile;
+        self
     }
 
     /// Starts a list of arguments, in the signature's order.
@@ -194,10 +204,12 @@ impl<'a> Launch<'a> {
                 self.given
             )));
         }
-        let [group_x, group_y] = work_group;
+        let [tile_x, tile_y] = self.pass.tile;
+        let group_x = (work_group[0] / tile_x).max(1);
+        let group_y = (work_group[1] / tile_y).max(1);
         let global = [
-            (size.width() as usize).next_multiple_of(group_x),
-            (size.height() as usize).next_multiple_of(group_y),
+            (size.width() as usize).div_ceil(tile_x).next_multiple_of(group_x),
+            (size.height() as usize).div_ceil(tile_y).next_multiple_of(group_y),
             1,
         ];
         let mut event = Event::null();

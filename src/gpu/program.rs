@@ -20,6 +20,10 @@ impl Defines {
         self
     }
 
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|d| d.0 == name).map(|d| d.1.as_str())
+    }
+
     /// The compiler's options: the constants, OpenCL C 1.2, argument names kept for checking.
     pub fn options(&self) -> String {
         let mut options = String::from("-cl-std=CL1.2 -cl-kernel-arg-info");

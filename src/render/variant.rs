@@ -21,6 +21,7 @@ pub struct Variant {
     pub leaf: Leaf,
     /// More voxels than 32 bits count.
     pub wide_index: bool,
+    pub lanes: u32,
 }
 
 /// The OpenCL name of a voxel type.
@@ -40,6 +41,7 @@ impl Variant {
             filter: sampling.filter,
             leaf: octree.leaf(),
             wide_index: volume.dims().voxels() > u64::from(u32::MAX),
+            lanes: std::env::var("ANGIORAY_LANES").ok().and_then(|l| l.parse().ok()).unwrap_or(8),
         }
     }
 
@@ -51,7 +53,7 @@ impl Variant {
             .with("LEAF", format!("{}u", self.leaf))
             .with("FILTER_LINEAR", u32::from(self.filter == Filter::Linear));
         CONSTANTS.iter().fold(defines, |defines, &(name, number)| {
-            defines.with(name, format!("{number}u"))
+            defines.with(name, number)
         })
     }
 }

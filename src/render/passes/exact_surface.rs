@@ -28,6 +28,7 @@ pub fn exact_surface(
     let variant = run.variant;
     let defines = variant
         .defines()
+        .with("LANES", variant.lanes)
         .with("LAYERS", switch(with_layers))
         .with("CERTIFICATE", switch(with_certificate))
         .with("COUNTERS", switch(with_counters));

@@ -61,7 +61,8 @@ impl Built {
         let key = (name, defines);
         if !self.passes.contains_key(&key) {
             let start = Instant::now();
-            let pass = Pass::build(device, "pass", name, &key.1, signature())?;
+            let tile = match key.1.get("LANES") { Some("8") => [4, 2], Some("16") => [4, 4], _ => [1, 1] };
+            let pass = Pass::build(device, "pass", name, &key.1, signature())?.with_tile(tile);
             self.build_ms += start.elapsed().as_secs_f64() * 1e3;
             self.passes.insert(key.clone(), pass);
         }

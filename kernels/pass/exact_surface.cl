@@ -10,7 +10,7 @@
 #include "lib/clip.clh"
 #include "lib/crossing.clh"
 
-kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                           const global float4 *clip_planes, uint clip_count,
                           VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                           global float *hit_mm, global uint *kind
@@ -32,7 +32,7 @@ kernel void exact_surface(const global VOXEL *voxels, const global uchar *node_c
     Mask meets = pixels.inside & interval.enter <= interval.exit;
     Ints cells_read = INTS(0);
     Ints nodes_tested = INTS(0);
-    Crossing found = first_crossing(voxels, node_class, levels, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
+    Crossing found = first_crossing(voxels, node_class, levels, cells, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
     Floats t = interval.enter + found.t;
 
     SCATTER(pixels.inside, hit_mm, pixels.index, t);

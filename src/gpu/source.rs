@@ -17,6 +17,7 @@ macro_rules! embedded {
 /// Every kernel file, its path below `kernels/`.
 const FILES: &[(&str, &str)] = embedded![
     "lib/abi.clh",
+    "lib/beam.clh",
     "lib/cells.clh",
     "lib/clip.clh",
     "lib/color.clh",

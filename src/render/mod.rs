@@ -1,6 +1,7 @@
 //! Casting a scene on an OpenCL device: the upload, the passes, the pipeline.
 
 mod abi;
+mod cells;
 mod classify;
 mod clip;
 mod directions;

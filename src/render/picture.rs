@@ -91,6 +91,10 @@ pub fn surface(
     let iso = stored(view.volume.rescale(), iso);
     let iso_error = (asked - f64::from(iso)).abs() as f32;
     let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso, iso_error))?;
+    let start = Instant::now();
+    let cells = super::cells::crossed(view.volume, view.octree, &classify::by_iso(view.octree, iso, iso_error), iso);
+    let cells = Buffer::upload(run.device, "cells", &cells)?;
+    run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -129,6 +133,7 @@ pub fn surface(
             view.uploaded,
             view.clip,
             &node_class,
+            &cells,
             &view.rays,
             &cast,
             &mut hit_mm,

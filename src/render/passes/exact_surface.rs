@@ -15,6 +15,7 @@ pub fn exact_surface(
     volume: &DeviceVolume,
     clip: &DeviceClip,
     node_class: &Buffer<u8>,
+    cells: &Buffer<u32>,
     rays: &RayGrid,
     cast: &SurfaceCast,
     hit_mm: &mut Buffer<f32>,
@@ -37,6 +38,7 @@ pub fn exact_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
@@ -59,6 +61,7 @@ pub fn exact_surface(
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
+        .input(cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

@@ -12,8 +12,8 @@
 // `floor`). Writes per pixel kind (surface where the ray meets the volume) and value (stored units;
 // 0 where it does not); with LAYERS depth (mm from the eye; +inf for the mean); with COUNTERS the
 // cells read and the nodes tested.
-#include "old/cells.clh"
-#include "old/clip.clh"
+#include "lib/beam.clh"
+#include "lib/clip.clh"
 
 #if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
 #error "PROJECTION, which value is wanted, is given by the host"
@@ -21,6 +21,228 @@
 
 // A slope along the way through a cell, as a share of its spread, that rounding may have made.
 #define FLAT_SHARE 1e-6f
+
+// What is known of rays on their way.
+typedef struct {
+    Floats most;    // of sign * Phi
+    Floats most_mm; // where it is first reached, from the entry
+#if PROJECTION == PROJECTION_LOCAL
+    Floats turn;    // the highest of a climb, the last of a fall
+    Floats turn_mm;
+    Mask rising;
+#endif
+    Mask done;
+} Search;
+
+#if PROJECTION == PROJECTION_MEAN
+static inline Floats mean_along(const global VOXEL *voxels, VolumeGrid volume, Ray ray, Interval interval, Mask alive, Ints *cells_read)
+{
+    CellWalk walk = cells_start(volume, ray, interval);
+    // Compensated summation (Kahan 1965): thousands of cells keep their digits.
+    Floats sum = FLOATS(0.0f);
+    Floats lost = FLOATS(0.0f);
+    Floats whole = FLOATS(0.0f);
+    Floats touched = FLOATS(0.0f);
+    // A cell's share of the way, along the axis that the ray crosses fastest: differences of
+    // places in the cell keep the digits that differences of t lose.
+    Floats x = fabs(walk.x.dir.high);
+    Floats y = fabs(walk.y.dir.high);
+    Floats z = fabs(walk.z.dir.high);
+    Mask x_fastest = x >= y & x >= z;
+    Mask y_fastest = !x_fastest & y >= z;
+    Ints axis = x_fastest ? INTS(0) : y_fastest ? INTS(1) : INTS(2);
+    while (ANY(alive)) {
+        Corners corners = cell_corners(voxels, volume, &walk, 0.0f);
+        *cells_read += alive ? INTS(1) : INTS(0);
+        CellExit exit = cell_exit(&walk, alive);
+        Floats3 near = point_in_cell(&walk, entry_moment(&walk), walk.axis, NO_LANE);
+        Floats3 far = point_in_cell(&walk, exit_moment(&walk, exit), exit_axis(&walk, exit), ALL_LANES);
+        Floats share = fabs(of_axis(axis, far.x - near.x, far.y - near.y, far.z - near.z));
+        Floats3 middle = {0.5f * (near.x + far.x), 0.5f * (near.y + far.y), 0.5f * (near.z + far.z)};
+        Floats mean = (corners_at(&corners, near) + 4.0f * corners_at(&corners, middle) + corners_at(&corners, far)) / 6.0f;
+        touched = alive & whole == 0.0f & share == 0.0f ? mean : touched;
+        Floats term = mean * share - lost;
+        Floats next = sum + term;
+        lost = alive ? (next - sum) - term : lost;
+        sum = alive ? next : sum;
+        whole = alive ? whole + share : whole;
+        alive = alive & !exit.ends;
+        cells_step(&walk, exit, alive);
+    }
+    // A ray that only touches the volume has the value there.
+    return whole > 0.0f ? sum / whole : touched;
+}
+#else
+
+// What a node or cell must beat to matter: by more, but where `ties` count.
+static inline Floats to_beat(const Search *search, ProjectionCast cast, Mask *ties)
+{
+#if PROJECTION == PROJECTION_LOCAL
+    // A climb that has reached the threshold ends where all that follows is lower. Else a local maximum
+    // that counts, or a higher maximum, is looked for.
+    Mask reached = search->rising & search->turn >= cast.threshold;
+    *ties = reached | search->most >= cast.threshold;
+    return reached ? search->turn : search->most >= cast.threshold ? FLOATS(cast.threshold) : search->most;
+#else
+    *ties = NO_LANE;
+    return search->most;
+#endif
+}
+
+// In the lanes of `which`, the ray passes by what cannot matter.
+static inline void pass_by(Search *search, ProjectionCast cast, Mask which)
+{
+#if PROJECTION == PROJECTION_LOCAL
+    Mask reached = search->rising & search->turn >= cast.threshold;
+    search->done = search->done | (which & reached);
+    // What is passed over is below the threshold: what follows is a climb from there.
+    which = which & !reached;
+    search->rising = search->rising | which;
+    search->turn = which ? FLOATS(-INFINITY) : search->turn;
+#endif
+}
+
+// Comes to an end of a monotone piece, in the lanes of `which`; `slope` is that of the piece before.
+static inline void come_to(Search *search, ProjectionCast cast, Floats v, Floats t, Floats slope, Floats flat, Mask which)
+{
+#if PROJECTION == PROJECTION_LOCAL
+    which = which & !search->done;
+    Mask climbs = which & (search->turn == -INFINITY | slope > flat);
+    Mask falls = which & !climbs & slope < -flat;
+    Mask higher = climbs & v > search->turn;
+    search->turn_mm = higher ? t : search->turn_mm;
+    search->turn = higher ? v : search->turn;
+    Mask counts = falls & search->rising & search->turn >= cast.threshold;
+    search->done = search->done | counts;
+    search->rising = (search->rising | climbs) & (!falls | counts);
+    search->turn = falls & !counts ? v : search->turn;
+#endif
+    Mask more = which & v > search->most;
+    search->most = more ? v : search->most;
+    search->most_mm = more ? t : search->most_mm;
+}
+
+// A cell that may matter, in the lanes of `which`.
+static inline void follow_cell(Search *search, ProjectionCast cast, const CellWalk *walk, const Corners *corners, CellExit exit, Mask which)
+{
+    Moment enters = entry_moment(walk);
+    Moment leaves = exit_moment(walk, exit);
+    Floats3 near = point_in_cell(walk, enters, walk->axis, NO_LANE);
+    Floats3 far = point_in_cell(walk, leaves, exit_axis(walk, exit), ALL_LANES);
+    Floats3 way = {far.x - near.x, far.y - near.y, far.z - near.z};
+    Cubic cubic = cubic_along(corners, near, way);
+    Floats turns[4];
+    turns[0] = FLOATS(0.0f);
+    cubic_turns(cubic, &turns[1], &turns[2]);
+    turns[3] = FLOATS(1.0f);
+    // Rise and fall are told by the slope: a dip too shallow for the values' digits has one all the same.
+    Floats flat = FLAT_SHARE * (corners_most(corners) - corners_least(corners));
+    for (uint n = 0u; n < 4u; n++) {
+        Floats s = turns[n];
+        Floats3 p = {near.x + way.x * s, near.y + way.y * s, near.z + way.z * s};
+        Floats v = cast.sign * corners_at(corners, p);
+        Floats t = enters.high + (leaves.high - enters.high) * s;
+        Mask there = which & (n == 0u || n == 3u ? ALL_LANES : s < 1.0f);
+#if PROJECTION == PROJECTION_LOCAL
+        // With the nearest filter the field changes at walls alone.
+        Floats before = n == 3u ? (turns[2] < 1.0f ? turns[2] : turns[1] < 1.0f ? turns[1] : FLOATS(0.0f)) : turns[n == 0u ? 0u : n - 1u];
+        Floats slope = n > 0u ? cast.sign * cubic_slope(cubic, 0.5f * (before + s)) : FILTER_LINEAR ? FLOATS(0.0f) : v - search->turn;
+#else
+        Floats slope = FLOATS(0.0f);
+#endif
+        come_to(search, cast, v, t, slope, flat, there);
+    }
+}
+
+// Walks the cells of the box, in the lanes of `alive` that stand in it; gives the lanes that go on.
+static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *walk, const CellBox *box, const global VOXEL *voxels,
+                              VolumeGrid volume, Mask alive, Ints *cells_read)
+{
+    Mask reading = alive & box_holds(box, walk->cell);
+    while (ANY(reading)) {
+        Corners corners = cell_corners(voxels, volume, walk, 0.0f);
+        *cells_read += reading ? INTS(1) : INTS(0);
+        CellExit exit = cell_exit(walk, reading);
+        Floats bound = cast.sign > 0.0f ? corners_most(&corners) : -corners_least(&corners);
+        Mask ties;
+        Floats beat = to_beat(search, cast, &ties);
+        Mask matters = reading & (bound > beat | (bound == beat & ties));
+        pass_by(search, cast, reading & !matters);
+        if (ANY(matters))
+            follow_cell(search, cast, walk, &corners, exit, matters);
+        Mask goes_on = reading & !search->done & !exit.ends;
+        alive = alive & !(reading & !goes_on);
+        cells_step(walk, exit, goes_on);
+        reading = goes_on & box_holds(box, walk->cell);
+    }
+    return alive;
+}
+
+static inline void search_along(Search *search, const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range,
+                                const global uint4 *levels, VolumeGrid volume, Ray ray, Interval interval, ProjectionCast cast, Mask alive,
+                                Ints *cells_read, Ints *nodes_tested)
+{
+    search->most = FLOATS(cast.floor);
+    search->most_mm = FLOATS(0.0f);
+    search->done = NO_LANE;
+#if PROJECTION == PROJECTION_LOCAL
+    search->turn = FLOATS(-INFINITY);
+    search->turn_mm = FLOATS(0.0f);
+    search->rising = ALL_LANES;
+#endif
+    CellWalk walk = cells_start(volume, ray, interval);
+    Walk way = walk_start(volume, cast.traverse);
+    CellBox box;
+    int everything = cast.traverse == TRAVERSE_OFF ? INT_MAX : 0;
+    box.low.x = box.low.y = box.low.z = INTS(0);
+    box.high.x = box.high.y = box.high.z = INTS(everything);
+    Ints3 before = octree_cell(volume, &walk); // in the last node
+    Beam beam;
+    bool together = cast.traverse == TRAVERSE_DISTANCE && ANY(alive) && beam_start(&beam, &walk, levels, volume, alive);
+    while (ANY(alive)) {
+        Mask ties;
+        Floats beat = to_beat(search, cast, &ties);
+        if (together) {
+            BeamRegion region;
+            float bound;
+            float least = LEAST_LANE(alive ? beat : FLOATS(INFINITY));
+            if (!beam_next_to_beat(&beam, node_class, node_range, cast.sign, least, ANY(alive & ties), &region, &bound, nodes_tested)) {
+                pass_by(search, cast, alive);
+                break;
+            }
+            Mask behind = alive & before_region(&beam, region, &walk);
+            pass_by(search, cast, behind);
+            behind = behind & !search->done;
+            Mask goes_on = leap_to_region(&beam, region, &walk, behind);
+            alive = alive & !(search->done | (behind & !goes_on));
+            box = region_box(&beam, region);
+        } else {
+            Mask leaping = alive & !box_holds(&box, walk.cell);
+            while (ANY(leaping)) {
+                Ints3 cell = octree_cell(volume, &walk);
+                walk_on(&way, before, cell, leaping);
+                before.x = leaping ? cell.x : before.x;
+                before.y = leaping ? cell.y : before.y;
+                before.z = leaping ? cell.z : before.z;
+                beat = to_beat(search, cast, &ties);
+                Mask skips = walk_down_to_beat(&way, node_class, node_range, levels, cell, cast.sign, beat, ties, &box, leaping, nodes_tested);
+                box_to_the_end(volume, &box, leaping);
+                leaping = leaping & skips;
+                pass_by(search, cast, leaping);
+                Mask goes_on = cells_leap(&walk, &box, leaping & !search->done);
+                alive = alive & !(leaping & !goes_on);
+                leaping = goes_on;
+            }
+        }
+        alive = search_box(search, cast, &walk, &box, voxels, volume, alive, cells_read);
+    }
+#if PROJECTION == PROJECTION_LOCAL
+    Mask counts = search->rising & search->turn >= cast.threshold;
+    search->most = counts ? search->turn : search->most;
+    search->most_mm = counts ? search->turn_mm : search->most_mm;
+#endif
+}
+#endif
 
 kernel void exact_projection(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range,
                              const global uint4 *levels, const global float4 *clip_planes, uint clip_count,
@@ -34,151 +256,32 @@ kernel void exact_projection(const global VOXEL *voxels, const global uchar *nod
 #endif
 )
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    Ray ray = pixel_ray(rays, i, j);
+    Pixels pixels = tile_pixels(rays);
+    Ray ray = pixel_ray(rays, pixels);
     Interval interval = volume_interval(volume, ray);
     clip_interval(&interval, clip_planes, clip_count, ray);
-    bool meets = interval.enter <= interval.exit;
-    float found = 0.0f;
-    float found_mm = INFINITY; // from the entry
-    uint cells_read = 0u;
-    uint nodes_tested = 0u;
-
-    if (meets) {
-        CellWalk walk = cells_start(volume, ray, interval);
-        bool more = true;
+    Mask meets = pixels.inside & interval.enter <= interval.exit;
+    Ints cells_read = INTS(0);
+    Ints nodes_tested = INTS(0);
 #if PROJECTION == PROJECTION_MEAN
-        // Compensated summation (Kahan 1965): thousands of cells keep their digits.
-        float sum = 0.0f;
-        float lost = 0.0f;
-        float whole = 0.0f;
-        // A cell's share of the way, along the axis that the ray crosses fastest: differences of
-        // places in the cell keep the digits that differences of t lose.
-        float3 speed = fabs(walk.dir);
-        uint axis = speed.x >= speed.y ? (speed.x >= speed.z ? 0u : 2u) : (speed.y >= speed.z ? 1u : 2u);
-        while (more) {
-            Corners corners = cell_corners(voxels, volume, &walk, 0.0f);
-            cells_read++;
-            CellExit exit = cell_exit(&walk);
-            float3 near = point_in_cell(&walk, walk.t, walk.axis, false);
-            float3 far = point_in_cell(&walk, exit.t, exit.axis, true);
-            float share = fabs(component(far, axis) - component(near, axis));
-            float mean = (corners_at(&corners, near) + 4.0f * corners_at(&corners, 0.5f * (near + far)) + corners_at(&corners, far)) / 6.0f;
-            found = whole == 0.0f && share == 0.0f ? mean : found;
-            float term = mean * share - lost;
-            float next = sum + term;
-            lost = (next - sum) - term;
-            sum = next;
-            whole += share;
-            more = cells_step(&walk, exit);
-        }
-        // A ray that only touches the volume has the value there.
-        found = whole > 0.0f ? sum / whole : found;
+    Floats found = mean_along(voxels, volume, ray, interval, meets, &cells_read);
+    Floats found_mm = FLOATS(INFINITY); // from the entry
 #else
-        float most = cast.floor; // of sign * Phi
-        found_mm = 0.0f;
-        Walk way = walk_start(volume, cast.traverse);
-        CellBox box = {(uint3)(0u), cast.traverse == TRAVERSE_OFF ? walk.count : (uint3)(0u)};
-        uint3 before = octree_cell(volume, &walk); // in the last node
-        bool done = false;
-#if PROJECTION == PROJECTION_LOCAL
-        float turn = -INFINITY; // the highest of a climb, the last of a fall
-        float turn_mm = 0.0f;
-        bool rising = true;
+    Search search;
+    search_along(&search, voxels, node_class, node_range, levels, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
+    Floats found = cast.sign * search.most;
+    Floats found_mm = search.most_mm;
 #endif
-        while (more && !done) {
-            float beat = most;
-            bool ties = false;
-#if PROJECTION == PROJECTION_LOCAL
-            // A climb that has reached the threshold ends where all that follows is lower. Else a
-            // local maximum that counts, or a higher maximum, is looked for.
-            bool reached = rising && turn >= cast.threshold;
-            ties = reached || most >= cast.threshold;
-            beat = reached ? turn : (most >= cast.threshold ? cast.threshold : most);
-#endif
-            bool skip = false;
-            if (!box_holds(box, walk.cell)) {
-                uint3 cell = octree_cell(volume, &walk);
-                walk_on(&way, before, cell);
-                before = cell;
-                skip = walk_down_to_beat(&way, node_class, node_range, levels, cell, cast.sign, beat, ties, &box, &nodes_tested);
-                box = box_to_the_end(volume, box);
-            }
-            Corners corners;
-            CellExit exit;
-            bool pass = skip;
-            if (!skip) {
-                corners = cell_corners(voxels, volume, &walk, 0.0f);
-                cells_read++;
-                exit = cell_exit(&walk);
-                float bound = cast.sign > 0.0f ? corners_most(&corners) : -corners_least(&corners);
-                pass = bound < beat || (bound == beat && !ties);
-            }
-#if PROJECTION == PROJECTION_LOCAL
-            done = pass && reached;
-            // What is passed over is below the threshold: what follows is a climb from there.
-            rising = rising || pass;
-            turn = pass && !done ? -INFINITY : turn;
-#endif
-            if (!pass) {
-                float3 near = point_in_cell(&walk, walk.t, walk.axis, false);
-                float3 far = point_in_cell(&walk, exit.t, exit.axis, true);
-                float ends[4] = {0.0f, 1.0f, 1.0f, 1.0f};
-                Cubic cubic = cubic_along(&corners, near, far - near);
-                uint last = cubic_turns(cubic, &ends[1], &ends[2]) + 1u;
-                ends[last] = 1.0f;
-#if PROJECTION == PROJECTION_LOCAL
-                // Rise and fall are told by the slope: a dip too shallow for the values' digits has
-                // one all the same.
-                float flat = FLAT_SHARE * (corners_most(&corners) - corners_least(&corners));
-#endif
-                for (uint n = 0u; n <= last && !done; n++) {
-                    float v = cast.sign * corners_at(&corners, near + (far - near) * ends[n]);
-                    float t = walk.t.x + (exit.t.x - walk.t.x) * ends[n];
-#if PROJECTION == PROJECTION_LOCAL
-                    // With the nearest filter the field changes at walls alone.
-                    float slope = n > 0u ? cast.sign * cubic_slope(cubic, 0.5f * (ends[n - 1u] + ends[n])) : (FILTER_LINEAR ? 0.0f : v - turn);
-                    if (turn == -INFINITY || slope > flat) {
-                        rising = true;
-                        if (v > turn) {
-                            turn = v;
-                            turn_mm = t;
-                        }
-                    } else if (slope < -flat) {
-                        done = rising && turn >= cast.threshold;
-                        rising = done;
-                        turn = done ? turn : v;
-                    }
-#endif
-                    if (v > most) {
-                        most = v;
-                        found_mm = t;
-                    }
-                }
-            }
-            more = !done && (skip ? cells_leap(&walk, box) : cells_step(&walk, exit));
-        }
-#if PROJECTION == PROJECTION_LOCAL
-        bool counts = rising && turn >= cast.threshold;
-        most = counts ? turn : most;
-        found_mm = counts ? turn_mm : found_mm;
-#endif
-        found = cast.sign * most;
-#endif
-    }
-
-    kind[pixel] = meets ? KIND_SURFACE : KIND_NOTHING;
-    value[pixel] = found;
+    Ints met = meets ? INTS(KIND_SURFACE) : INTS(KIND_NOTHING);
+    Floats seen = meets ? found : FLOATS(0.0f);
+    SCATTER(pixels.inside, kind, pixels.index, met);
+    SCATTER(pixels.inside, value, pixels.index, seen);
 #if LAYERS
-    depth[pixel] = ray.base_mm + (interval.enter + found_mm);
+    Floats depth_mm = meets ? ray.base_mm + (interval.enter + found_mm) : FLOATS(INFINITY);
+    SCATTER(pixels.inside, depth, pixels.index, depth_mm);
 #endif
 #if COUNTERS
-    steps[pixel] = cells_read;
-    nodes[pixel] = nodes_tested;
+    SCATTER(pixels.inside, steps, pixels.index, cells_read);
+    SCATTER(pixels.inside, nodes, pixels.index, nodes_tested);
 #endif
 }

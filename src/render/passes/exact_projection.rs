@@ -27,7 +27,8 @@ pub fn exact_projection(
     let variant = run.variant;
     let defines = variant
         .defines()
-        .with("PROJECTION", format!("{}u", which as u32))
+        .with("LANES", variant.lanes)
+        .with("PROJECTION", format!("{}", which as u32))
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run

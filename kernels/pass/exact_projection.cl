@@ -26,6 +26,7 @@
 typedef struct {
     Floats most;    // of sign * Phi
     Floats most_mm; // where it is first reached, from the entry
+    Floats known;   // a value that the ray is known to reach
 #if PROJECTION == PROJECTION_LOCAL
     Floats turn;    // the highest of a climb, the last of a fall
     Floats turn_mm;
@@ -84,8 +85,8 @@ static inline Floats to_beat(const Search *search, ProjectionCast cast, Mask *ti
     *ties = reached | search->most >= cast.threshold;
     return reached ? search->turn : search->most >= cast.threshold ? FLOATS(cast.threshold) : search->most;
 #else
-    *ties = NO_LANE;
-    return search->most;
+    *ties = search->known > search->most;
+    return *ties ? search->known : search->most;
 #endif
 }
 
@@ -154,11 +155,27 @@ static inline void follow_cell(Search *search, ProjectionCast cast, const CellWa
     }
 }
 
+// The most that a ray meets in a cell of sign * Phi, by where it enters and leaves it in single
+// precision, which is off by a share of `slack_mm`.
+static inline Floats nearly_most(const CellWalk *walk, const Corners *corners, Floats enters_mm, Floats leaves_mm, Floats slack_mm, float sign)
+{
+    Floats3 near = nearly_in_cell(walk, enters_mm);
+    Floats3 far = nearly_in_cell(walk, leaves_mm);
+    Floats3 way = {far.x - near.x, far.y - near.y, far.z - near.z};
+    Floats fastest = most_of(fabs(walk->x.dir.high), most_of(fabs(walk->y.dir.high), fabs(walk->z.dir.high)));
+    Floats off = 4.0f * (slack_mm * fastest + walk->rounding);
+    return cubic_bound(cubic_along(corners, near, way), sign) + off * (corners_most(corners) - corners_least(corners));
+}
+
 // Walks the cells of the box, in the lanes of `alive` that stand in it; gives the lanes that go on.
 static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *walk, const CellBox *box, const global VOXEL *voxels,
                               VolumeGrid volume, Mask alive, Ints *cells_read)
 {
     Mask reading = alive & box_holds(box, walk->cell);
+#if PROJECTION == PROJECTION_EXTREMUM
+    Floats enters_mm = entry_moment(walk).high;
+    Floats slack_mm = FLOATS(0.0f);
+#endif
     while (ANY(reading)) {
         Corners corners = cell_corners(voxels, volume, walk, 0.0f);
         *cells_read += reading ? INTS(1) : INTS(0);
@@ -167,6 +184,15 @@ static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *wal
         Mask ties;
         Floats beat = to_beat(search, cast, &ties);
         Mask matters = reading & (bound > beat | (bound == beat & ties));
+#if PROJECTION == PROJECTION_EXTREMUM
+        if (ANY(matters)) {
+            Floats leaves_mm = least_of(exit.nearly_mm, walk->end.high);
+            Floats most = nearly_most(walk, &corners, enters_mm, leaves_mm, slack_mm + exit.slack_mm, cast.sign);
+            matters = matters & (most > beat | (most == beat & ties));
+        }
+        enters_mm = exit.nearly_mm;
+        slack_mm = exit.slack_mm;
+#endif
         pass_by(search, cast, reading & !matters);
         if (ANY(matters))
             follow_cell(search, cast, walk, &corners, exit, matters);
@@ -184,6 +210,7 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
 {
     search->most = FLOATS(cast.floor);
     search->most_mm = FLOATS(0.0f);
+    search->known = FLOATS(-INFINITY);
     search->done = NO_LANE;
 #if PROJECTION == PROJECTION_LOCAL
     search->turn = FLOATS(-INFINITY);
@@ -199,14 +226,26 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
     Ints3 before = octree_cell(volume, &walk); // in the last node
     Beam beam;
     bool together = cast.traverse == TRAVERSE_DISTANCE && ANY(alive) && beam_start(&beam, &walk, levels, volume, alive);
+#if PROJECTION == PROJECTION_EXTREMUM
+    if (together) {
+        // Where most is to be expected, first: what the rays reach there all else must beat.
+        BeamRegion highest = highest_layer(&beam, node_class, node_range, cast.sign, nodes_tested);
+        Search ahead = *search;
+        CellWalk from = walk;
+        Mask behind = alive & before_region(&beam, highest, &walk);
+        Mask there = leap_to_region(&beam, highest, &from, behind) | (alive & !behind);
+        box = region_box(&beam, highest);
+        search_box(&ahead, cast, &from, &box, voxels, volume, there, cells_read);
+        search->known = ahead.most;
+    }
+#endif
     while (ANY(alive)) {
         Mask ties;
         Floats beat = to_beat(search, cast, &ties);
         if (together) {
             BeamRegion region;
-            float bound;
             float least = LEAST_LANE(alive ? beat : FLOATS(INFINITY));
-            if (!beam_next_to_beat(&beam, node_class, node_range, cast.sign, least, ANY(alive & ties), &region, &bound, nodes_tested)) {
+            if (!beam_next_to_beat(&beam, voxels, node_class, node_range, cast.sign, least, ANY(alive & ties), &region, nodes_tested)) {
                 pass_by(search, cast, alive);
                 break;
             }

@@ -138,6 +138,7 @@ static inline void follow_cell(Search *search, ProjectionCast cast, const CellWa
     turns[3] = FLOATS(1.0f);
     // Rise and fall are told by the slope: a dip too shallow for the values' digits has one all the same.
     Floats flat = FLAT_SHARE * (corners_most(corners) - corners_least(corners));
+#pragma unroll
     for (uint n = 0u; n < 4u; n++) {
         Floats s = turns[n];
         Floats3 p = {near.x + way.x * s, near.y + way.y * s, near.z + way.z * s};

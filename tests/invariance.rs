@@ -288,7 +288,10 @@ fn any_work_group_gives_the_same_bytes() {
     let volume = tubes();
     let octree = common::octree(&volume);
     let frames = |work_group| {
-        let options = Options { work_group };
+        let options = Options {
+            work_group,
+            ..Options::default()
+        };
         let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
         all_frames(&mut renderer, &volume, true, Traverse::Hierarchical)
     };
@@ -335,6 +338,7 @@ fn impossible_work_groups_are_refused() {
     for work_group in [[0, 8], [8, 0], [1 << 20, 1 << 20], [usize::MAX, 2]] {
         let options = Options {
             work_group: Some(work_group),
+            ..Options::default()
         };
         assert!(
             Renderer::new(&device, &volume, &octree, options).is_err(),

@@ -5,7 +5,7 @@ mod common;
 use angioray::extent::ImageSize;
 use angioray::gpu::{Buffer, Pass, Timings, output};
 use angioray::octree::Leaf;
-use angioray::render::{Variant, struct_layouts};
+use angioray::render::{Lanes, Variant, struct_layouts};
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
 
@@ -19,6 +19,7 @@ fn every_struct_has_the_same_layout_on_the_device() {
         filter: Filter::Linear,
         leaf: Leaf::default(),
         wide_index: false,
+        lanes: Lanes::ONE,
     };
     let pass = Pass::build(
         &device,
@@ -36,7 +37,7 @@ fn every_struct_has_the_same_layout_on_the_device() {
     let mut timings = Timings::default();
     pass.launch(&device)
         .output(&mut layout)
-        .run(ImageSize::new(1, 1).unwrap(), [1, 1], &mut timings)
+        .run(ImageSize::new(1, 1).unwrap(), Some([1, 1]), &mut timings)
         .unwrap();
     let on_device = layout.download(&device).unwrap();
     let mut rest = &on_device[..];

@@ -9,7 +9,7 @@ use std::thread;
 
 use angioray::gpu::{files, flatten};
 use angioray::octree::Leaf;
-use angioray::render::Variant;
+use angioray::render::{Lanes, Variant};
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
 
@@ -136,6 +136,10 @@ fn constants(options: &str) -> Vec<(&str, &str)> {
 fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
     let given = constants(variant);
     let mut names = BTreeSet::new();
+    let own: BTreeSet<&str> = kernel
+        .lines()
+        .filter_map(|line| line.strip_prefix("#define ")?.split([' ', '(']).next())
+        .collect();
     for line in kernel
         .lines()
         .filter(|line| line.starts_with("#if ") || line.starts_with("#elif "))
@@ -144,6 +148,7 @@ fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
         let of_switch = |word: &&str| {
             word.starts_with(|c: char| c.is_ascii_uppercase())
                 && !given.iter().any(|(name, _)| name == word)
+                && !own.contains(word)
         };
         names.extend(words.filter(of_switch).map(str::to_owned));
     }
@@ -154,7 +159,9 @@ fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
             .filter(|(constant, _)| constant.starts_with(&prefix))
             .map(|(_, value)| (*value).to_owned())
             .collect();
-        if named.is_empty() {
+        if name == "LANES" {
+            Lanes::ALL.map(|lanes| lanes.to_string()).to_vec()
+        } else if named.is_empty() {
             vec!["0".to_owned(), "1".to_owned()]
         } else {
             named
@@ -197,6 +204,7 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32, wide_index: bool) -> Str
         filter,
         leaf,
         wide_index,
+        lanes: Lanes::ONE,
     }
     .defines()
     .options()

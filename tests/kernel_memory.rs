@@ -219,8 +219,8 @@ fn a_read_beside_the_volume_is_reported() {
     let Some(under) = Under::oclgrind() else {
         return;
     };
-    let index = "((INDEX)z * volume.ny + y) * volume.nx + x]";
-    let broken = "((INDEX)z * volume.ny + y + volume.ny) * volume.nx + x]";
+    let index = "(AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x);";
+    let broken = "(AS_INDEX(z) * volume.ny + AS_INDEX(y) + volume.ny) * volume.nx + AS_INDEX(x);";
     let under = under.with_broken("lib/field.clh", index, broken);
     let volume = under.phantom("noise --size 3x5x7");
     let report = under.render(&volume, SMALL, "broken.exr");
@@ -265,7 +265,7 @@ fn aimed_rays_under_oclgrind() {
         f32::INFINITY,
         f32::NAN,
     ];
-    let mut caster = RayCaster::new(&device);
+    let mut caster = RayCaster::new(&device, None);
     let mut hits = 0;
     for n in 0..5 {
         let target = target(7, n).unwrap();

@@ -156,6 +156,7 @@ static inline void follow_cell(Search *search, ProjectionCast cast, const CellWa
     }
 }
 
+#if PROJECTION == PROJECTION_EXTREMUM
 // The most that a ray meets in a cell of sign * Phi, by where it enters and leaves it in single
 // precision, which is off by a share of `slack_mm`.
 static inline Floats nearly_most(const CellWalk *walk, const Corners *corners, Floats enters_mm, Floats leaves_mm, Floats slack_mm, float sign)
@@ -167,6 +168,7 @@ static inline Floats nearly_most(const CellWalk *walk, const Corners *corners, F
     Floats off = 4.0f * (slack_mm * fastest + walk->rounding);
     return cubic_bound(cubic_along(corners, near, way), sign) + off * (corners_most(corners) - corners_least(corners));
 }
+#endif
 
 // Walks the cells of the box, in the lanes of `alive` that stand in it; gives the lanes that go on.
 static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *walk, const CellBox *box, const global VOXEL *voxels,
@@ -226,7 +228,7 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
     box.high.x = box.high.y = box.high.z = INTS(everything);
     Ints3 before = octree_cell(volume, &walk); // in the last node
     Beam beam;
-    bool together = cast.traverse == TRAVERSE_DISTANCE && ANY(alive) && beam_start(&beam, &walk, levels, volume, alive);
+    bool together = FILTER_LINEAR && cast.traverse == TRAVERSE_DISTANCE && ANY(alive) && beam_start(&beam, &walk, levels, volume, alive);
 #if PROJECTION == PROJECTION_EXTREMUM
     if (together) {
         // Where most is to be expected, first: what the rays reach there all else must beat.

@@ -1,36 +1,57 @@
 // The first crossings of rays that are given one by one, in index space: what exact_surface does for
-// a picture's. The rays stand in rows of `width`.
+// a picture's. The rays stand in rows of `width`; a work-item follows LANES of a row.
 //
-// Reads the voxels, per octree node its CLASS_*, and per ray its origin and direction. Writes hit
-// (in lengths of the direction from the origin; +inf: none), KIND_* and CERTIFICATE_*.
-#include "old/crossing.clh"
+// Reads the voxels, per octree node its CLASS_*, a bit per cell that may be crossed, and per ray its
+// origin and direction. Writes hit (in lengths of the direction from the origin; +inf: none), KIND_* and
+// CERTIFICATE_*.
+#include "lib/crossing.clh"
 
-kernel void aimed_rays(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+// Three numbers of four a ray.
+static inline Floats3 of_rays(const global float4 *rays, Ints i)
+{
+    const global float *numbers = (const global float *)rays;
+    Floats3 v;
+    v.x = GATHER(Floats, numbers, i * 4);
+    v.y = GATHER(Floats, numbers, i * 4 + 1);
+    v.z = GATHER(Floats, numbers, i * 4 + 2);
+    return v;
+}
+
+static inline Pair exactly(Floats number)
+{
+    Pair pair = {number, FLOATS(0.0f)};
+    return pair;
+}
+
+kernel void aimed_rays(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                        VolumeGrid volume, SurfaceCast cast, uint count, uint width,
                        const global float4 *origins, const global float4 *dirs,
                        global float *hit, global uint *kind, global uint *certificate)
 {
-    uint column = get_global_id(0);
-    uint i = get_global_id(1) * width + column;
-    if (column >= width || i >= count)
-        return;
+    Ints column = (int)(get_global_id(0) * LANES) + (LANE_X + LANE_Y * (int)TILE_WIDTH);
+    Ints i = (int)(get_global_id(1) * width) + column;
+    Mask there = (column < (int)width) & (i < (int)count);
+    i = there ? i : INTS((int)count - 1);
+    Floats3 origin = of_rays(origins, i);
+    Floats3 dir = of_rays(dirs, i);
     Ray ray;
-    ray.origin = origins[i].xyz;
-    ray.origin_low = (float3)(0.0f);
-    ray.dir = dirs[i].xyz;
-    ray.dir_low = (float3)(0.0f);
-    ray.dir_world = ray.dir;
-    ray.base_mm = 0.0f;
+    ray.origin.x = exactly(origin.x);
+    ray.origin.y = exactly(origin.y);
+    ray.origin.z = exactly(origin.z);
+    ray.dir.x = exactly(dir.x);
+    ray.dir.y = exactly(dir.y);
+    ray.dir.z = exactly(dir.z);
+    ray.dir_world = dir;
+    ray.base_mm = FLOATS(0.0f);
     Interval interval = volume_interval(volume, ray);
-    Crossing found;
-    found.t = INFINITY;
-    found.kind = KIND_NOTHING;
-    found.certificate = only_touches(interval) ? CERTIFICATE_UNDECIDED : CERTIFICATE_MISS;
-    uint cells_read = 0u;
-    uint nodes_tested = 0u;
-    if (interval.enter <= interval.exit)
-        found = first_crossing(voxels, node_class, levels, volume, ray, interval, cast, &cells_read, &nodes_tested);
-    hit[i] = interval.enter + found.t;
-    kind[i] = found.kind;
-    certificate[i] = found.certificate;
+    Mask meets = there & (interval.enter <= interval.exit);
+    Ints cells_read = INTS(0);
+    Ints nodes_tested = INTS(0);
+    Crossing found = first_crossing(voxels, node_class, levels, cells, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
+    Ints missed = only_touches(interval) ? INTS(CERTIFICATE_UNDECIDED) : INTS(CERTIFICATE_MISS);
+    Ints proven = meets ? found.certificate : missed;
+    Floats t = interval.enter + found.t;
+    SCATTER(there, hit, i, t);
+    SCATTER(there, kind, i, found.kind);
+    SCATTER(there, certificate, i, proven);
 }

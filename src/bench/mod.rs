@@ -97,6 +97,7 @@ impl Bench<'_> {
                 format!("{}, {}, {}", device.name, device.platform, device.driver),
             ),
             ("work group", format!("{:?}", self.options.work_group)),
+            ("lanes", format!("{:?}", self.options.lanes)),
         ]))
     }
 

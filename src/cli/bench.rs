@@ -7,7 +7,6 @@ use clap::builder::StyledStr;
 use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::render::Options;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::one_or_more;
@@ -172,7 +171,11 @@ impl BenchArguments {
             // their own unless they were there last.
             stop::listen()?;
         }
-        let Engine::Device { device, work_group } = Engine::open(&device)? else {
+        let Engine::Device {
+            device,
+            options: use_of_device,
+        } = Engine::open(&device)?
+        else {
             return Err(Error::usage(
                 "the reference cannot be measured: it is what others are held against",
             )
@@ -193,9 +196,7 @@ impl BenchArguments {
             experiment,
             command: command_line(),
             device: &device,
-            options: Options {
-                work_group: work_group.map(Into::into),
-            },
+            options: use_of_device,
             effort,
             protocol: options.protocol,
             specimens,

@@ -11,7 +11,7 @@ use crate::gpu::Device;
 use crate::octree::Octree;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
-use crate::render::{GradientFigures, Options, Renderer};
+use crate::render::{GradientFigures, Lanes, Options, Renderer};
 use crate::scene::Scene;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
@@ -33,15 +33,21 @@ group! {
         /// Work items of a group; never changes the picture [default: by the device]
         #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
         work_group: WorkGroup,
+
+        /// Rays that a work item follows side by side: 1, 8 or 16; never changes the picture [default:
+        /// by the device: 8 or 16 on a CPU, as its vectors are wide, 1 on a GPU]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        lanes: Lanes,
     }
 }
 
 impl DeviceOptions {
-    /// What of a scene file still applies when these are the flags: the reference has no work
-    /// groups.
+    /// What of a scene file still applies when these are the flags: the reference has neither work
+    /// groups nor lanes.
     pub fn keep_of(&self, mut file: Self) -> Self {
         if self.device.as_ref().is_some_and(DeviceName::is_reference) {
             file.work_group = None;
+            file.lanes = None;
         }
         file
     }
@@ -90,13 +96,13 @@ impl FromStr for WorkGroup {
     }
 }
 
-readable!(DeviceName, WorkGroup);
+readable!(DeviceName, WorkGroup, Lanes);
 
 pub enum Engine {
     Reference,
     Device {
-        device: Device,
-        work_group: Option<WorkGroup>,
+        device: Box<Device>,
+        options: Options,
     },
 }
 
@@ -120,18 +126,27 @@ impl Engine {
     /// # Errors
     /// Usage: work groups for the reference. No device of that name, or none at all.
     pub fn open(options: &DeviceOptions) -> Result<Self> {
-        let work_group = options.work_group;
         match &options.device {
-            Some(name) if name.is_reference() => match work_group {
-                None => Ok(Self::Reference),
-                Some(_) => Err(Error::usage(
-                    "'--work-group' is for OpenCL devices; the reference has none",
-                )),
-            },
+            Some(name) if name.is_reference() => {
+                let refused = [
+                    ("--work-group", options.work_group.is_some()),
+                    ("--lanes", options.lanes.is_some()),
+                ];
+                match refused.into_iter().find(|(_, given)| *given) {
+                    None => Ok(Self::Reference),
+                    Some((flag, _)) => Err(Error::usage(format!(
+                        "'{flag}' is for OpenCL devices; the reference has none"
+                    ))),
+                }
+            }
             name => {
                 let choice = name.as_ref().map_or("", |DeviceName(name)| name);
-                let device = Device::select(choice)?;
-                Ok(Self::Device { device, work_group })
+                let device = Box::new(Device::select(choice)?);
+                let options = Options {
+                    work_group: options.work_group.map(Into::into),
+                    lanes: options.lanes,
+                };
+                Ok(Self::Device { device, options })
             }
         }
     }
@@ -168,13 +183,10 @@ impl Engine {
     /// Ready for any scene of the volume, which is uploaded once.
     pub fn caster<'a>(&'a self, volume: &'a Volume, prepared: &'a Prepared) -> Result<Caster<'a>> {
         match (self, prepared) {
-            (Self::Device { device, work_group }, Prepared::Octree { octree, octree_ms }) => {
-                let options = Options {
-                    work_group: work_group.map(Into::into),
-                };
+            (Self::Device { device, options }, Prepared::Octree { octree, octree_ms }) => {
                 Ok(Caster::Device {
                     device,
-                    renderer: Box::new(Renderer::new(device, volume, octree, options)?),
+                    renderer: Box::new(Renderer::new(device, volume, octree, *options)?),
                     octree_ms: *octree_ms,
                 })
             }

@@ -45,6 +45,8 @@ pub struct DeviceInfo {
     pub memory_bytes: u64,
     pub max_allocation_bytes: u64,
     pub max_work_group: usize,
+    /// Single-precision numbers in a vector of its own.
+    pub vector_width: u32,
 }
 
 /// An open device with one in-order queue that times what runs on it.
@@ -213,6 +215,11 @@ fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceI
     let DeviceInfoResult::MaxWorkGroupSize(max_work_group) = ask(Query::MaxWorkGroupSize)? else {
         return None;
     };
+    let DeviceInfoResult::NativeVectorWidthFloat(vector_width) =
+        ask(Query::NativeVectorWidthFloat)?
+    else {
+        return None;
+    };
     Some(DeviceInfo {
         id,
         name: text(Query::Name)?,
@@ -232,5 +239,6 @@ fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceI
         memory_bytes,
         max_allocation_bytes,
         max_work_group,
+        vector_width,
     })
 }

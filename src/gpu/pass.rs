@@ -188,11 +188,17 @@ impl<'a> Launch<'a> {
         self
     }
 
-    /// Launches one work-item per pixel in groups of `work_group` pixels and records the event.
+    /// Launches a work-item per tile of pixels, in groups of `work_group` work-items along x and y,
+    /// and records the event.
     ///
     /// # Errors
     /// An argument was wrong or missing, or the device refused the launch.
-    pub fn run(self, size: ImageSize, work_group: [usize; 2], timings: &mut Timings) -> Result<()> {
+    pub fn run(
+        self,
+        size: ImageSize,
+        work_group: Option<[usize; 2]>,
+        timings: &mut Timings,
+    ) -> Result<()> {
         let name = self.pass.name;
         if let Some(error) = self.failed {
             return Err(error);
@@ -205,11 +211,15 @@ impl<'a> Launch<'a> {
             )));
         }
         let [tile_x, tile_y] = self.pass.tile;
-        let group_x = (work_group[0] / tile_x).max(1);
-        let group_y = (work_group[1] / tile_y).max(1);
+        let [group_x, group_y] =
+            work_group.unwrap_or_else(|| own_choice(self.device, self.pass.tile));
         let global = [
-            (size.width() as usize).div_ceil(tile_x).next_multiple_of(group_x),
-            (size.height() as usize).div_ceil(tile_y).next_multiple_of(group_y),
+            (size.width() as usize)
+                .div_ceil(tile_x)
+                .next_multiple_of(group_x),
+            (size.height() as usize)
+                .div_ceil(tile_y)
+                .next_multiple_of(group_y),
             1,
         ];
         let mut event = Event::null();
@@ -229,5 +239,19 @@ impl<'a> Launch<'a> {
         .map_err(|e| device_error(&format!("launch the pass {name}"), &e))?;
         timings.record(name, event);
         Ok(())
+    }
+}
+
+/// Pixels along x and y of a group: small square tiles keep neighbouring rays, and the voxels that they
+/// read, together.
+const GROUP_PIXELS: [usize; 2] = [8, 8];
+
+/// Work-items of a group, each taking a `tile` of pixels; single ones where the device takes fewer.
+fn own_choice(device: &Device, tile: [usize; 2]) -> [usize; 2] {
+    let group = [0, 1].map(|axis| (GROUP_PIXELS[axis] / tile[axis]).max(1));
+    if group[0] * group[1] <= device.info().max_work_group {
+        group
+    } else {
+        [1, 1]
     }
 }

@@ -20,6 +20,7 @@ impl Defines {
         self
     }
 
+    /// The value of a constant.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|d| d.0 == name).map(|d| d.1.as_str())
     }

@@ -1,4 +1,6 @@
-//! Which cells a surface may cross: a bit each.
+//! Which cells a surface may cross: a bit each, once per iso value.
+
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
@@ -8,27 +10,68 @@ use crate::with_voxels;
 
 use super::classify::Class;
 
-/// A bit per cell, x fastest: whether its corners lie on both sides of `iso`, stored units.
-pub fn crossed(volume: &Volume, octree: &Octree, classes: &[u8], iso: f32) -> Vec<u32> {
-    with_voxels!(volume.voxels(), voxels => of(voxels, volume, octree, classes, iso))
+/// A bit per cell, x fastest, the lowest bit of a word first: whether its corners lie on both sides of
+/// `iso` (stored units), or so near to it that `iso_error` leaves their side uncertain. Only leaves of
+/// [`Class::Visit`] hold such cells; `classes` are those of the octree's nodes.
+pub fn crossed(
+    volume: &Volume,
+    octree: &Octree,
+    classes: &[u8],
+    iso: f32,
+    iso_error: f32,
+) -> Vec<u32> {
+    let cells = volume.dims().cells().map(|n| n as usize);
+    let count: usize = cells.iter().product();
+    let words: Vec<AtomicU32> = (0..count.div_ceil(32)).map(|_| AtomicU32::new(0)).collect();
+    let leaf = octree.leaf().edge() as usize;
+    let leaves = octree.levels()[0];
+    let [leaves_x, leaves_y, _] = leaves.size.map(|n| n as usize);
+    with_voxels!(volume.voxels(), voxels => {
+        (0..leaves.nodes()).into_par_iter().for_each(|node| {
+            if classes[node] != Class::Visit as u8 {
+                return;
+            }
+            let first = [
+                node % leaves_x * leaf,
+                node / leaves_x % leaves_y * leaf,
+                node / (leaves_x * leaves_y) * leaf,
+            ];
+            let [x, y, z] = [0, 1, 2].map(|axis| first[axis]..(first[axis] + leaf).min(cells[axis]));
+            for z in z {
+                for y in y.clone() {
+                    for x in x.clone() {
+                        let range = range_of(voxels, volume, [x, y, z]);
+                        if may_cross(range, iso, iso_error) {
+                            let cell = (z * cells[1] + y) * cells[0] + x;
+                            words[cell / 32].fetch_or(1 << (cell % 32), Ordering::Relaxed);
+                        }
+                    }
+                }
+            }
+        });
+    });
+    words.into_iter().map(AtomicU32::into_inner).collect()
 }
 
-fn of<T: Voxel>(voxels: &[T], volume: &Volume, octree: &Octree, classes: &[u8], iso: f32) -> Vec<u32> {
+/// The least and the greatest voxel at a cell's corners.
+fn range_of<T: Voxel>(voxels: &[T], volume: &Volume, [x, y, z]: [usize; 3]) -> [f32; 2] {
     let [nx, ny, nz] = volume.dims().array().map(|n| n as usize);
-    let [cx, cy, cz] = [nx, ny, nz].map(|n| (n - 1).max(1));
-    let leaf = octree.leaf().edge() as usize;
-    let [lx, ly, _] = octree.levels()[0].size.map(|n| n as usize);
-    let words = (cx * cy * cz).div_ceil(32) + 1;
-    let bits: Vec<std::sync::atomic::AtomicU32> = (0..words).map(|_| std::sync::atomic::AtomicU32::new(0)).collect();
-    let inside = |x: usize, y: usize, z: usize| voxels[(z.min(nz - 1) * ny + y.min(ny - 1)) * nx + x.min(nx - 1)].into() >= f64::from(iso);
-    (0..octree.levels()[0].nodes()).into_par_iter().for_each(|node| {
-        if classes[node] != Class::Visit as u8 { return; }
-        let (x0, y0, z0) = (node % lx * leaf, node / lx % ly * leaf, node / (lx * ly) * leaf);
-        for z in z0..(z0 + leaf).min(cz) { for y in y0..(y0 + leaf).min(cy) { for x in x0..(x0 + leaf).min(cx) {
-            let mut any = false; let mut all = true;
-            for c in 0..8 { let i = inside(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)); any |= i; all &= i; }
-            if any && !all { let i = (z * cy + y) * cx + x; bits[i >> 5].fetch_or(1 << (i & 31), std::sync::atomic::Ordering::Relaxed); }
-        }}}
-    });
-    bits.into_iter().map(|b| b.into_inner()).collect()
+    let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+    for z in z..(z + 2).min(nz) {
+        for y in y..(y + 2).min(ny) {
+            for x in x..(x + 2).min(nx) {
+                let value: f64 = voxels[(z * ny + y) * nx + x].into();
+                least = least.min(value as f32);
+                most = most.max(value as f32);
+            }
+        }
+    }
+    [least, most]
+}
+
+/// As the kernels tell a cell's side: heights are single-precision differences.
+fn may_cross([least, most]: [f32; 2], iso: f32, iso_error: f32) -> bool {
+    let above = least - iso >= iso_error;
+    let below = most - iso < -iso_error;
+    !(above || below)
 }

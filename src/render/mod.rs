@@ -8,6 +8,7 @@ mod directions;
 mod emission;
 mod gradient;
 mod homogeneity;
+mod lanes;
 mod medium;
 mod passes;
 mod picture;
@@ -22,6 +23,7 @@ mod variant;
 
 pub use directions::{AngleError, Directions};
 pub use gradient::GradientFigures;
+pub use lanes::Lanes;
 pub use pipeline::{Options, Renderer, Rendering};
 pub use ray_caster::{FirstCrossing, RayCaster};
 pub use twins::struct_layouts;

@@ -10,6 +10,7 @@ use crate::scene::{Phong, Projection, Refine, Rgb, SamplingMethod, Scene, Traver
 use crate::volume::Volume;
 
 use super::abi::{ProjectionCast, RayGrid, SurfaceCast};
+use super::cells;
 use super::classify;
 use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
@@ -92,8 +93,9 @@ pub fn surface(
     let iso_error = (asked - f64::from(iso)).abs() as f32;
     let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso, iso_error))?;
     let start = Instant::now();
-    let cells = super::cells::crossed(view.volume, view.octree, &classify::by_iso(view.octree, iso, iso_error), iso);
-    let cells = Buffer::upload(run.device, "cells", &cells)?;
+    let classes = classify::by_iso(view.octree, iso, iso_error);
+    let cells = cells::crossed(view.volume, view.octree, &classes, iso, iso_error);
+    let cells = Buffer::upload(run.device, "crossed cells", &cells)?;
     run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
     let cast = SurfaceCast {
         iso,

@@ -13,6 +13,7 @@ use crate::volume::Volume;
 use super::clip::DeviceClip;
 use super::emission::emission;
 use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
+use super::lanes::Lanes;
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
 use super::planes::check_room;
@@ -23,14 +24,10 @@ use super::variant::{MOST_SAMPLES, Variant, voxel_cl_name};
 /// How the device is used; never changes a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// Pixels along x and y per work-group; `None` for [`Options::WORK_GROUP`], or single pixels
-    /// where the device takes fewer.
+    /// Work-items along x and y of a group; `None`: those of 8 × 8 pixels.
     pub work_group: Option<[usize; 2]>,
-}
-
-impl Options {
-    /// Small square tiles keep neighbouring rays, and the voxels that they read, together.
-    pub const WORK_GROUP: [usize; 2] = [8, 8];
+    /// Rays that a work-item follows side by side; `None`: [`Lanes::of`] the device.
+    pub lanes: Option<Lanes>,
 }
 
 /// A volume on a device, ready to be looked at.
@@ -42,7 +39,8 @@ pub struct Renderer<'a> {
     /// Those of the last picture that needed some.
     directions: Option<DeviceDirections>,
     built: Built,
-    work_group: [usize; 2],
+    work_group: Option<[usize; 2]>,
+    lanes: Lanes,
     upload_ms: f64,
     /// Uploaded and not yet told.
     uploaded_bytes: u64,
@@ -84,22 +82,7 @@ impl<'a> Renderer<'a> {
     ) -> Result<Self> {
         let start = Instant::now();
         let uploaded_before = device.uploaded_bytes();
-        let most = device.info().max_work_group;
-        let own_choice = if most < Options::WORK_GROUP.iter().product() {
-            [1, 1]
-        } else {
-            Options::WORK_GROUP
-        };
-        let work_group = options.work_group.unwrap_or(own_choice);
-        let pixels = work_group[0].checked_mul(work_group[1]);
-        if !pixels.is_some_and(|pixels| (1..=most).contains(&pixels)) {
-            return Err(Error::usage(format!(
-                "a work-group of {}x{} pixels: the device '{}' takes 1 to {most} in all",
-                work_group[0],
-                work_group[1],
-                device.info().name
-            )));
-        }
+        check_work_group(device, options.work_group)?;
         let levels: Vec<[u32; 4]> = octree
             .levels()
             .iter()
@@ -119,7 +102,8 @@ impl<'a> Renderer<'a> {
             uploaded,
             directions: None,
             built: Built::default(),
-            work_group,
+            work_group: options.work_group,
+            lanes: options.lanes.unwrap_or_else(|| Lanes::of(device.info())),
             upload_ms: start.elapsed().as_secs_f64() * 1e3,
             uploaded_bytes: device.uploaded_bytes() - uploaded_before,
         })
@@ -167,7 +151,7 @@ impl<'a> Renderer<'a> {
             timings: &mut timings,
             size: scene.size,
             work_group: self.work_group,
-            variant: Variant::of(self.volume, self.octree, &scene.sampling),
+            variant: Variant::of(self.volume, self.octree, &scene.sampling, self.lanes),
             classify_ms: 0.0,
         };
         let world_from_index = self.volume.geometry().world_from_index();
@@ -224,6 +208,20 @@ impl<'a> Renderer<'a> {
             device_bytes: held_bytes + clip.planes.bytes() + planes.bytes(),
         })
     }
+}
+
+fn check_work_group(device: &Device, work_group: Option<[usize; 2]>) -> Result<()> {
+    let Some([x, y]) = work_group else {
+        return Ok(());
+    };
+    let most = device.info().max_work_group;
+    if x.checked_mul(y).is_some_and(|n| (1..=most).contains(&n)) {
+        return Ok(());
+    }
+    Err(Error::usage(format!(
+        "a work-group of {x}x{y} work-items: the device '{}' takes 1 to {most} in all",
+        device.info().name
+    )))
 }
 
 /// Samples are counted in single precision: a ray may have at most [`MOST_SAMPLES`] of them.

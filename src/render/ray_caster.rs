@@ -12,7 +12,9 @@ use crate::scene::{Refine, Sampling};
 use crate::volume::Volume;
 
 use super::abi::{SurfaceCast, VolumeGrid};
+use super::cells;
 use super::classify;
+use super::lanes::Lanes;
 use super::rays::volume_grid;
 use super::twins::stored;
 use super::variant::{Variant, refine_number, traverse_number, voxel_cl_name};
@@ -32,13 +34,16 @@ const ROW: u32 = 4096;
 /// Casts rays on a device; builds each variant once.
 pub struct RayCaster<'a> {
     device: &'a Device,
+    lanes: Lanes,
     built: HashMap<Variant, Pass>,
 }
 
 impl<'a> RayCaster<'a> {
-    pub fn new(device: &'a Device) -> Self {
+    /// `lanes` rays side by side; `None`: [`Lanes::of`] the device.
+    pub fn new(device: &'a Device, lanes: Option<Lanes>) -> Self {
         Self {
             device,
+            lanes: lanes.unwrap_or_else(|| Lanes::of(device.info())),
             built: HashMap::new(),
         }
     }
@@ -57,7 +62,7 @@ impl<'a> RayCaster<'a> {
         rays: &[([f32; 3], [f32; 3])],
     ) -> Result<Vec<FirstCrossing>> {
         let sampling = Sampling::default();
-        let variant = Variant::of(volume, octree, &sampling);
+        let variant = Variant::of(volume, octree, &sampling, self.lanes);
         let iso = stored(volume.rescale(), iso);
         let cast = SurfaceCast {
             iso,
@@ -93,7 +98,9 @@ impl<'a> RayCaster<'a> {
         let grid = volume_grid(volume, levels.len() as u32);
         let levels = Buffer::upload(device, "octree's levels", &levels)?;
         let classes = classify::by_iso(octree, iso, 0.0);
+        let cells = cells::crossed(volume, octree, &classes, iso, 0.0);
         let classes = Buffer::upload(device, "octree's classes", &classes)?;
+        let cells = Buffer::upload(device, "crossed cells", &cells)?;
         let mut hit = Buffer::<f32>::new(device, "hits", rays.len())?;
         let mut kind = Buffer::<u32>::new(device, "kinds", rays.len())?;
         let mut certificate = Buffer::<u32>::new(device, "certificates", rays.len())?;
@@ -105,6 +112,7 @@ impl<'a> RayCaster<'a> {
             .input(&voxels)
             .input(&classes)
             .input(&levels)
+            .input(&cells)
             .value(&grid)
             .value(&cast)
             .value(&count)
@@ -114,7 +122,7 @@ impl<'a> RayCaster<'a> {
             .output(&mut hit)
             .output(&mut kind)
             .output(&mut certificate)
-            .run(size, [8, 1], &mut timings)?;
+            .run(size, Some([1, 1]), &mut timings)?;
         timings.finish(device)?;
         let (hit, kind) = (hit.download(device)?, kind.download(device)?);
         let certificate = certificate.download(device)?;
@@ -134,6 +142,7 @@ impl<'a> RayCaster<'a> {
                 input_of("voxels", voxel_cl_name(variant.voxel)),
                 input::<u8>("node_class"),
                 input::<[u32; 4]>("levels"),
+                input::<u32>("cells"),
                 value::<VolumeGrid>("volume"),
                 value::<SurfaceCast>("cast"),
                 value::<u32>("count"),
@@ -144,8 +153,11 @@ impl<'a> RayCaster<'a> {
                 output::<u32>("kind"),
                 output::<u32>("certificate"),
             ];
-            let defines = variant.defines().with("CERTIFICATE", 1);
+            let lanes = variant.lanes;
+            let defines = variant.defines().with("LANES", lanes);
+            let defines = defines.with("CERTIFICATE", 1);
             let pass = Pass::build(self.device, "test", "aimed_rays", &defines, signature)?;
+            let pass = pass.with_tile([lanes.get() as usize, 1]);
             self.built.insert(variant, pass);
         }
         Ok(&self.built[&variant])

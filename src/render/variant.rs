@@ -10,6 +10,7 @@ use crate::scene::{
 use crate::volume::{Volume, VoxelType};
 
 use super::classify::Class;
+use super::lanes::Lanes;
 use super::medium;
 use super::reach::{CLASS_BITS, REACH_MOST};
 
@@ -21,7 +22,7 @@ pub struct Variant {
     pub leaf: Leaf,
     /// More voxels than 32 bits count.
     pub wide_index: bool,
-    pub lanes: u32,
+    pub lanes: Lanes,
 }
 
 /// The OpenCL name of a voxel type.
@@ -35,13 +36,15 @@ pub fn voxel_cl_name(voxel: VoxelType) -> &'static str {
 }
 
 impl Variant {
-    pub fn of(volume: &Volume, octree: &Octree, sampling: &Sampling) -> Self {
+    /// Vectors index voxels by 32 bits: larger volumes are cast ray by ray.
+    pub fn of(volume: &Volume, octree: &Octree, sampling: &Sampling, lanes: Lanes) -> Self {
+        let wide_index = volume.dims().voxels() > u64::from(u32::MAX);
         Self {
             voxel: volume.voxels().voxel_type(),
             filter: sampling.filter,
             leaf: octree.leaf(),
-            wide_index: volume.dims().voxels() > u64::from(u32::MAX),
-            lanes: std::env::var("ANGIORAY_LANES").ok().and_then(|l| l.parse().ok()).unwrap_or(8),
+            wide_index,
+            lanes: if wide_index { Lanes::ONE } else { lanes },
         }
     }
 

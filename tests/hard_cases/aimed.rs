@@ -47,20 +47,20 @@ fn a_cast_that_loses_rays_is_caught() {
         // The turning points of the cubic forgotten.
         (
             "lib/cubic.clh",
-            "if (!(discriminant > 0.0f))",
-            "if (discriminant >= -INFINITY)",
+            "Mask turns = discriminant > 0.0f;",
+            "Mask turns = NO_LANE & discriminant > 0.0f;",
         ),
         // A crossing in the gap between two cells' cubics lost.
         (
             "lib/crossing.clh",
-            "value = cubic.c0;\n            crosses = begun && (value >= 0.0f) != inside;",
-            "value = cubic.c0;",
+            "which & search->begun & (inside ^ search->inside)",
+            "NO_LANE & (inside ^ search->inside)",
         ),
         // A certificate that ignores rounding.
         (
             "lib/crossing.clh",
             "return spread * 4e-6f + iso_error;",
-            "return 1e-30f;",
+            "return FLOATS(1e-30f);",
         ),
     ] {
         assert_caught(test, file, &[(right, wrong)]);
@@ -101,7 +101,7 @@ fn hostile_rays_end() {
     let rays: Vec<_> = (0..200_000)
         .map(|_| ([any(), any(), any()], [any(), any(), any()]))
         .collect();
-    let mut caster = RayCaster::new(&device);
+    let mut caster = RayCaster::new(&device, None);
     let mut hits = 0;
     for n in 0..5 {
         let Target { volume, iso, caps } = target(SEED, n).unwrap();

@@ -82,13 +82,13 @@ fn constant_medium(seen: &Seen) -> Vec<String> {
 }
 
 /// Opacities taken for those of another length.
-const OTHER_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
+const OTHER_LENGTH: Mutant = kernel("old/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
 
 #[test]
 fn homogeneous() {
     // The last panel of a ray, which is shorter, taken for a whole one.
     let whole_panels = kernel(
-        "lib/lattice.clh",
+        "old/lattice.clh",
         &[(
             "return t < lattice.length_mm ? t : lattice.length_mm;",
             "return t;",
@@ -109,7 +109,7 @@ fn slab() {
     }
     // The nearer point's opacity between two points.
     let not_between = kernel(
-        "lib/transfer.clh",
+        "old/transfer.clh",
         &[(
             "return a + (knot_colors[after] - a) * f;",
             "return f < 0.5f ? a : knot_colors[after];",
@@ -125,7 +125,7 @@ fn ramp() {
     }
     // Opacity for absorption: right for the faintest alone.
     let faint_alone = kernel(
-        "lib/transfer.clh",
+        "old/transfer.clh",
         &[(
             "float absorption = -log1p(-opacity);",
             "float absorption = opacity;",
@@ -138,7 +138,7 @@ fn ramp() {
 fn gaussian() {
     // What lies behind is not hidden.
     let not_hidden = kernel(
-        "lib/gather.clh",
+        "old/gather.clh",
         &[("light * gathered->transmission;", "light;")],
     );
     judge(
@@ -157,7 +157,7 @@ fn tf_spike() {
     // Whole intervals between the values of two samples left out; panels judged by their points
     // alone, whatever lies between.
     let left_out = kernel(
-        "lib/preintegrated.clh",
+        "old/preintegrated.clh",
         &[("(below + whole + above)", "(below + above)")],
     );
     let points_alone = kernel(
@@ -233,7 +233,7 @@ fn opaque_step() {
     }
     // Infinite absorption.
     let infinite = kernel(
-        "lib/transfer.clh",
+        "old/transfer.clh",
         &[(
             "return absorption < cast.most_absorption ? absorption : cast.most_absorption;",
             "return absorption;",
@@ -255,7 +255,7 @@ fn faint_4096() {
     }
     // Opacities without log1p.
     let lost_digits = kernel(
-        "lib/transfer.clh",
+        "old/transfer.clh",
         &[("-log1p(-opacity)", "-log(1.0f - opacity)")],
     );
     judge("emission::faint_4096", "faint-4096", truth, &[lost_digits]);

@@ -4,7 +4,7 @@ use angioray::scene::{SamplingMethod, Scene};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
 
-use crate::mutant::{Mutant, kernel};
+use crate::mutant::{Mutant, NEVER_ABOVE, kernel};
 use crate::trial::{Seen, is, judge, near};
 
 pub const CASES: &[&str] = &[
@@ -32,8 +32,8 @@ pub const CASES: &[&str] = &[
 const NO_TURNS: Mutant = kernel(
     "lib/cubic.clh",
     &[(
-        "if (!(discriminant > 0.0f))",
-        "if (discriminant >= -INFINITY)",
+        "Mask turns = discriminant > 0.0f;",
+        "Mask turns = NO_LANE & discriminant > 0.0f;",
     )],
 );
 
@@ -50,8 +50,8 @@ const SEVEN_CORNERS: Mutant = kernel(
 const TEXTURE_WEIGHTS: Mutant = kernel(
     "lib/field.clh",
     &[(
-        "float difference = b - a;",
-        "float difference = b - a;\n    t = rint(t * 256.0f) / 256.0f;",
+        "Floats difference = b - a;",
+        "Floats difference = b - a;\n    t = rint(t * 256.0f) / 256.0f;",
     )],
 );
 
@@ -111,7 +111,10 @@ fn three_roots() {
     // Any of the roots, not the first.
     let last_root = kernel(
         "lib/crossing.clh",
-        &[("if (!crosses && found.kind", "if (found.kind")],
+        &[(
+            "Mask in_first = starts_in ^ a_in;",
+            "Mask in_first = (starts_in ^ a_in) & !(a_in ^ b_in);",
+        )],
     );
     judge(
         "isosurface::three_roots",
@@ -146,10 +149,13 @@ fn two_roots_in_a_step() {
 /// "Above" for "at or above", wherever a cell lies on one side of the iso value.
 const ABOVE_ONLY: Mutant = kernel(
     "lib/crossing.clh",
-    &[(
-        "if (most < 0.0f || least >= 0.0f)\n                value = least >= 0.0f ? least : most;",
-        "if (most <= 0.0f || least > 0.0f)\n                value = least > 0.0f ? least : most - 1.0f;",
-    )],
+    &[
+        ("most < 0.0f | least >= 0.0f", "most <= 0.0f | least > 0.0f"),
+        (
+            "least >= 0.0f ? least : most",
+            "least > 0.0f ? least : most - 1.0f",
+        ),
+    ],
 );
 
 #[test]
@@ -185,13 +191,7 @@ fn iso_at_extremes() {
             is("at most a point is hit", hits <= 1)
         }
     }
-    let never_above = kernel(
-        "lib/crossing.clh",
-        &[(
-            "value = class == CLASS_ABOVE ? 1.0f : -1.0f;",
-            "value = -1.0f;",
-        )],
-    );
+    let never_above = kernel("lib/crossing.clh", &NEVER_ABOVE);
     judge(
         "isosurface::iso_at_extremes",
         "iso-at-extremes",
@@ -379,7 +379,7 @@ fn zero_gradient() {
         lines
     }
     let no_normal = kernel(
-        "lib/gradient.clh",
+        "old/gradient.clh",
         &[("return fallback;", "return (float3)(0.0f);")],
     );
     judge(
@@ -407,7 +407,7 @@ fn mirrored_normals() {
         lines
     }
     let index_space = kernel(
-        "lib/gradient.clh",
+        "old/gradient.clh",
         &[("volume.gradient_row_x.x * covector.x", "covector.x")],
     );
     judge(

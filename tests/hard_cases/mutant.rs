@@ -82,3 +82,12 @@ fn copy_with(folder: &Path, file: &str, changes: &[(&str, &str)]) {
     }
     std::fs::write(folder.join(file), text).unwrap();
 }
+
+/// Nodes that lie above the iso value taken for ones below it.
+pub const NEVER_ABOVE: [(&str, &str); 2] = [
+    ("region.class == CLASS_ABOVE ? 1.0f : -1.0f", "-1.0f"),
+    (
+        "class_of(byte) == CLASS_ABOVE ? FLOATS(1.0f) : FLOATS(-1.0f)",
+        "FLOATS(-1.0f)",
+    ),
+];

@@ -41,7 +41,10 @@ fn grid_rays() {
     // The last cell along an axis forgotten.
     let last_cell = kernel(
         "lib/cells.clh",
-        &[("return cell + 1u < a.count", "return cell + 2u < a.count")],
+        &[(
+            "a.count = axis_cells(voxels);",
+            "a.count = axis_cells(voxels) - 1;",
+        )],
     );
     judge("rays::grid_rays", "grid-rays", something, &[last_cell]);
 }
@@ -52,8 +55,8 @@ fn face_rays() {
     let open = kernel(
         "lib/ray.clh",
         &[(
-            "if (above_low > 0.0f || above_high < 0.0f)",
-            "if (above_low >= 0.0f || above_high <= 0.0f)",
+            "above_low > 0.0f | above_high < 0.0f",
+            "above_low >= 0.0f | above_high <= 0.0f",
         )],
     );
     fn outermost(seen: &Seen) -> Vec<String> {
@@ -69,7 +72,10 @@ fn eye_on_grid() {
     // What lies behind the eye is seen.
     let behind = kernel(
         "lib/ray.clh",
-        &[("interval.enter = 0.0f;", "interval.enter = -INFINITY;")],
+        &[(
+            "interval.enter = FLOATS(0.0f);",
+            "interval.enter = FLOATS(-INFINITY);",
+        )],
     );
     judge(
         "rays::eye_on_grid",
@@ -85,8 +91,11 @@ fn far_camera() {
     let from_the_eye = kernel(
         "lib/ray.clh",
         &[(
-            "ray.origin = origin.high;",
-            "ray.origin = (origin.high - dir.high * (grid.base_mm * len)) + dir.high * (grid.base_mm * len);",
+            "ray.base_mm = grid.base_mm * len;",
+            "ray.base_mm = grid.base_mm * len;
+    ray.origin.x.high = (ray.origin.x.high - ray.dir.x.high * ray.base_mm) + ray.dir.x.high * ray.base_mm;
+    ray.origin.y.high = (ray.origin.y.high - ray.dir.y.high * ray.base_mm) + ray.dir.y.high * ray.base_mm;
+    ray.origin.z.high = (ray.origin.z.high - ray.dir.z.high * ray.base_mm) + ray.dir.z.high * ray.base_mm;",
         )],
     );
     judge("rays::far_camera", "far-camera", something, &[from_the_eye]);
@@ -95,7 +104,7 @@ fn far_camera() {
 #[test]
 fn lenses() {
     // Lengths along rays at the picture's edge are measured along the middle one.
-    let not_unit = kernel("lib/ray.clh", &[("1.0f / len", "1.0f")]);
+    let not_unit = kernel("lib/ray.clh", &[("1.0f / len", "FLOATS(1.0f)")]);
     judge("rays::lenses", "lenses", something, &[not_unit]);
 }
 
@@ -160,7 +169,10 @@ fn tiny_spacing() {
     // A length that is small in mm, not in voxels.
     let a_micron = kernel(
         "lib/ray.clh",
-        &[("interval.enter = 0.0f;", "interval.enter = 1e-3f;")],
+        &[(
+            "interval.enter = FLOATS(0.0f);",
+            "interval.enter = FLOATS(1e-3f);",
+        )],
     );
     judge("rays::tiny_spacing", "tiny-spacing", same_bump, &[a_micron]);
 }

@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3};
 
 use crate::common::Figure::{AlphaMax, ColorMean, DepthMean, Kind, NormalMean, ValueMax};
 use crate::common::{self, Figure, on_reference};
-use crate::mutant::{Mutant, assert_caught, is_mutant, kernel};
+use crate::mutant::{Mutant, NEVER_ABOVE, assert_caught, is_mutant, kernel};
 use crate::trial::{Seen, is, judge, near, resolved};
 
 pub const CASES: &[&str] = &[
@@ -66,13 +66,7 @@ fn constant() {
             _ => is("nothing is hit", seen.hits() == 0),
         }
     }
-    let never_above = kernel(
-        "lib/crossing.clh",
-        &[(
-            "value = class == CLASS_ABOVE ? 1.0f : -1.0f;",
-            "value = -1.0f;",
-        )],
-    );
+    let never_above = kernel("lib/crossing.clh", &NEVER_ABOVE);
     judge("volumes::constant", "constant", truth, &[never_above]);
 }
 
@@ -81,7 +75,13 @@ fn types() {
     // Voxels cut to eight bits: a byte's type for all.
     let eight_bits = kernel(
         "lib/field.clh",
-        &[("return (float)voxels[", "return (float)(uchar)voxels[")],
+        &[
+            (
+                "AS_FLOATS(GATHER(Ints, voxels, i))",
+                "AS_FLOATS(GATHER(Ints, voxels, i) & 0xff)",
+            ),
+            ("((two) & 0xffff)", "((two) & 0xff)"),
+        ],
     );
     judge("volumes::types", "types", |_| Vec::new(), &[eight_bits]);
 }
@@ -240,16 +240,16 @@ fn orientations() {
     }
 }
 
-/// The linear index of a cell's first voxel.
-const INDEX: &str = "(((INDEX)low.z * volume.ny + low.y) * volume.nx + low.x)";
+/// A voxel's linear index.
+const INDEX: &str = "(AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x)";
 
 #[test]
 fn wide_index() {
     let sixteen_bits = kernel(
-        "lib/cells.clh",
+        "lib/field.clh",
         &[(
             INDEX,
-            "(ushort)(((INDEX)low.z * volume.ny + low.y) * volume.nx + low.x)",
+            "((AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x)) & 0xffffu",
         )],
     );
     judge(
@@ -263,11 +263,18 @@ fn wide_index() {
     }
     // The control the other way: an index of 64 bits is not caught.
     let sixty_four = [(
-        INDEX,
-        "(((ulong)low.z * volume.ny + low.y) * volume.nx + low.x)",
+        "typedef Uints Index;
+#define AS_INDEX(number) AS_UINTS(number)",
+        "#if LANES == 8
+typedef ulong8 Index;
+#define AS_INDEX(number) convert_ulong8(AS_UINTS(number))
+#else
+typedef ulong16 Index;
+#define AS_INDEX(number) convert_ulong16(AS_UINTS(number))
+#endif",
     )];
     let caught = std::panic::catch_unwind(|| {
-        assert_caught("volumes::wide_index", "lib/cells.clh", &sixty_four);
+        assert_caught("volumes::wide_index", "lib/field.clh", &sixty_four);
     });
     assert!(caught.is_err(), "64 bits change the picture");
 }
@@ -308,7 +315,7 @@ fn clip_planes() {
     // Planes along the rays without effect; only the first plane of all.
     let along = kernel(
         "lib/clip.clh",
-        &[("if (height < 0.0f)", "if (height < -INFINITY)")],
+        &[("& height < 0.0f", "& height < -INFINITY")],
     );
     let first = kernel(
         "lib/clip.clh",

@@ -17,7 +17,7 @@ mod transfer;
 use angioray::extent::ImageSize;
 use angioray::gpu::{Buffer, Device, Element, Launch, Parameter, Pass, Timings};
 use angioray::octree::Leaf;
-use angioray::render::Variant;
+use angioray::render::{Lanes, Variant};
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
 
@@ -28,6 +28,7 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32) -> Variant {
         filter,
         leaf: Leaf::new(leaf).unwrap(),
         wide_index: false,
+        lanes: Lanes::ONE,
     }
 }
 
@@ -52,7 +53,7 @@ fn room<T: Element>(device: &Device, len: usize) -> Buffer<T> {
 fn run(device: &Device, launch: Launch, count: usize) {
     let size = ImageSize::new(count as u32, 1).unwrap();
     let mut timings = Timings::default();
-    launch.run(size, [16, 1], &mut timings).unwrap();
+    launch.run(size, Some([16, 1]), &mut timings).unwrap();
     timings.finish(device).unwrap();
 }
 

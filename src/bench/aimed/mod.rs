@@ -149,7 +149,7 @@ pub fn targets(count: u64) -> impl Iterator<Item = (u64, u64)> {
 pub fn run(device: &Device, seed: u64, count: u64, progress: &dyn Progress) -> Result<Report> {
     let mut report = Report::default();
     progress.begin("aimed rays", count);
-    let mut caster = RayCaster::new(device);
+    let mut caster = RayCaster::new(device, None);
     for (number, rays) in targets(count) {
         report = report.and(at_target(&mut caster, seed, number, rays)?);
         progress.advance(rays);

@@ -42,7 +42,7 @@ fn count(bench: &Bench) -> u64 {
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let mut report = Report::default();
-    let mut caster = RayCaster::new(bench.device);
+    let mut caster = RayCaster::new(bench.device, bench.options.lanes);
     bench.progress.begin("aimed rays", count(bench));
     for (number, rays) in aimed::targets(count(bench)) {
         let at_target = bench.unit(&format!("target {number}"), || {

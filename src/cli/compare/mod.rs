@@ -11,7 +11,7 @@ use crate::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_tab
 use crate::error::{Error, Result};
 use crate::measure::Peer;
 use crate::octree::Octree;
-use crate::render::{Options, Renderer};
+use crate::render::Renderer;
 use crate::scene::{Count, ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
 
 use super::engine::{DeviceOptions, Engine};
@@ -95,7 +95,11 @@ impl CompareArguments {
         }
         let source = Source::of(&options.volume)?;
         let options = source.stored(options);
-        let Engine::Device { device, work_group } = Engine::open(&device)? else {
+        let Engine::Device {
+            device,
+            options: use_of_device,
+        } = Engine::open(&device)?
+        else {
             return Err(Error::usage(
                 "the reference cannot be compared: it is what others are held against",
             )
@@ -132,10 +136,7 @@ impl CompareArguments {
         let began = Instant::now();
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let octree_ms = ms_since(began);
-        let options = Options {
-            work_group: work_group.map(Into::into),
-        };
-        let mut renderer = Renderer::new(&device, &loaded.volume, &octree, options)?;
+        let mut renderer = Renderer::new(&device, &loaded.volume, &octree, use_of_device)?;
         let truth = truth::truth(compare.cache, &loaded.volume)?;
         let comparison = Comparison {
             volume: &loaded.volume,

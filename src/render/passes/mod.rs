@@ -24,6 +24,7 @@ use crate::gpu::{
 use super::abi::VolumeGrid;
 use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
+use super::lanes::Lanes;
 use super::variant::{Variant, voxel_cl_name};
 
 pub use adaptive_emission::adaptive_emission;
@@ -61,8 +62,9 @@ impl Built {
         let key = (name, defines);
         if !self.passes.contains_key(&key) {
             let start = Instant::now();
-            let tile = match key.1.get("LANES") { Some("8") => [4, 2], Some("16") => [4, 4], _ => [1, 1] };
-            let pass = Pass::build(device, "pass", name, &key.1, signature())?.with_tile(tile);
+            let lanes = key.1.get("LANES").map_or(Ok(Lanes::ONE), str::parse)?;
+            let pass = Pass::build(device, "pass", name, &key.1, signature())?;
+            let pass = pass.with_tile(lanes.tile());
             self.build_ms += start.elapsed().as_secs_f64() * 1e3;
             self.passes.insert(key.clone(), pass);
         }
@@ -76,8 +78,8 @@ pub struct Run<'a> {
     pub built: &'a mut Built,
     pub timings: &'a mut Timings,
     pub size: ImageSize,
-    /// Pixels along x and y that one work-group takes.
-    pub work_group: [usize; 2],
+    /// Work-items along x and y of a group; `None`: small square tiles of pixels.
+    pub work_group: Option<[usize; 2]>,
     pub variant: Variant,
     /// Time spent classifying the octree's nodes.
     pub classify_ms: f64,

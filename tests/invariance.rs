@@ -1,12 +1,12 @@
 //! What must never change one bit of a picture: skipping, the way through the octree, the leaf's
-//! edge, the work-group's size.
+//! edge, the work-group's size, how many rays a work-item follows side by side.
 
 mod common;
 
 use angioray::frame::{Frame, Wanted};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
-use angioray::render::{Options, Renderer};
+use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
     ClipPlane, Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod,
     Refine, Rgb, SamplingMethod, TransferFunction, Traverse, Window,
@@ -298,6 +298,49 @@ fn any_work_group_gives_the_same_bytes() {
     let first = frames(None);
     for work_group in [[1, 1], [5, 3]] {
         assert!(frames(Some(work_group)) == first, "{work_group:?}");
+    }
+}
+
+#[test]
+fn any_number_of_lanes_gives_the_same_bytes() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let signed = volume_of([23, 18, 31], |x, y, z| (hash(x, y, z) * 6e4 - 3e4) as i16);
+    let wide = volume_of([18, 27, 22], |x, y, z| (hash(y, z, x) * 6.5e4) as u16);
+    let flat = volume_of([1, 24, 17], |x, y, z| (hash(x, y, z) * 255.0) as u8);
+    // What reads voxels differs with their type, all else is the same for all types.
+    for (volume, modes) in [
+        (tubes(), &["iso", "mip", "minip", "mean", "lmip"][..]),
+        (mixed(), &["iso"]),
+        (signed, &["iso"]),
+        (wide, &["mip"]),
+        (flat, &["iso", "mip"]),
+    ] {
+        let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
+        let pictures = pictures(volume.range().max);
+        for picture in pictures
+            .iter()
+            .filter(|picture| modes.contains(&picture.mode()))
+        {
+            let [one, eight, sixteen] = Lanes::ALL.map(|lanes| {
+                let options = Options {
+                    lanes: Some(lanes),
+                    ..Options::default()
+                };
+                let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
+                let frames = [Traverse::Hierarchical, Traverse::Distance].map(|traverse| {
+                    let mut scene = common::scene(&volume, SIZE_PX, picture.clone());
+                    scene.sampling.method = SamplingMethod::Exact;
+                    scene.sampling.traverse = traverse;
+                    picture_bits(&renderer.render(&scene, Wanted::ALL).unwrap().frame)
+                });
+                assert!(frames[0] == frames[1], "{} {lanes} lanes", picture.mode());
+                frames
+            });
+            assert!(one == eight, "{} 8 lanes", picture.mode());
+            assert!(one == sixteen, "{} 16 lanes", picture.mode());
+        }
     }
 }
 

@@ -381,12 +381,16 @@ fn disorder(path: &str, text: &str) -> Option<String> {
     let includes_outside_lib = text
         .lines()
         .filter(|line| line.starts_with("#include"))
-        .any(|line| !line.starts_with("#include \"lib/"));
+        .any(|line| {
+            !["lib", "old"]
+                .iter()
+                .any(|folder| line.starts_with(&format!("#include \"{folder}/")))
+        });
     let problem = if !text.starts_with("// ") {
         "does not begin with a comment that says what it is"
     } else if includes_outside_lib {
         "includes something that is not in lib"
-    } else if path.starts_with("lib/") {
+    } else if path.starts_with("lib/") || path.starts_with("old/") {
         if !kernel_names.is_empty() {
             "is in lib and has a kernel"
         } else if !text.lines().any(|line| line == "#pragma once") {

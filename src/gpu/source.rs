@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn every_kernel_file_is_embedded() {
         let mut on_disk = Vec::new();
-        for folder in ["lib", "pass", "test"] {
+        for folder in ["lib", "old", "pass", "test"] {
             let path = Path::new(env!("CARGO_MANIFEST_DIR"))
                 .join("kernels")
                 .join(folder);

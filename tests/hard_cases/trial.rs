@@ -7,7 +7,7 @@ use angioray::hardcases::scenes;
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Picture, Scene, SceneOptions, Subject};
+use angioray::scene::{Picture, Scene, SceneOptions, Subject, Traverse};
 use angioray::volume::{HardCase, Histogram, Volume, suggested_iso};
 
 use crate::common::{self, assert_sound, on_reference};
@@ -129,8 +129,10 @@ pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
                 volume: Some(volume),
                 ..Change::default()
             },
+            // Ray by ray: a beam looks at the leaves beside it too, and may be saved by them.
             Mutant::Octree(octree) => Change {
                 octree: Some(octree),
+                scene: Some(|scene| scene.sampling.traverse = Traverse::Uniform),
                 ..Change::default()
             },
         };

@@ -1,8 +1,8 @@
 // The colour of each hit surface: linear light, premultiplied, opaque where something was hit.
 //
 // Reads kind of cast_surface and, with SHADED, normal of surface_normal. Writes color.
-#include "old/ray.clh"
-#include "old/shade.clh"
+#include "lib/plane.clh"
+#include "lib/shade.clh"
 
 kernel void shade_surface(RayGrid rays, Shading shading, const global uint *kind
 #if SHADED
@@ -10,20 +10,22 @@ kernel void shade_surface(RayGrid rays, Shading shading, const global uint *kind
 #endif
                           , global float4 *color)
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    float4 seen = (float4)(0.0f);
-    if (kind[pixel] != KIND_NOTHING) {
-        float3 rgb = shading.color.xyz;
+    Pixels pixels = tile_pixels(rays);
+    Mask hit = pixels_ints(kind, pixels) != KIND_NOTHING;
+    Floats4 seen = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
+    if (ANY(hit)) {
+        Floats3 rgb = {FLOATS(shading.color.x), FLOATS(shading.color.y), FLOATS(shading.color.z)};
 #if SHADED
-        Ray ray = pixel_ray(rays, i, j);
-        rgb = reflect_light(shading, rgb, normal[pixel].xyz, -ray.dir_world);
+        Floats4 n = pixels_fours(normal, pixels);
+        Floats3 facing = {n.x, n.y, n.z};
+        Ray ray = pixel_ray(rays, pixels);
+        Floats3 toward_eye = {-ray.dir_world.x, -ray.dir_world.y, -ray.dir_world.z};
+        rgb = reflect_light(shading, rgb, facing, toward_eye);
 #endif
-        seen = (float4)(rgb, 1.0f);
+        seen.x = hit ? rgb.x : seen.x;
+        seen.y = hit ? rgb.y : seen.y;
+        seen.z = hit ? rgb.z : seen.z;
+        seen.w = hit ? FLOATS(1.0f) : seen.w;
     }
-    color[pixel] = seen;
+    put_fours(color, pixels, seen);
 }

@@ -3,8 +3,9 @@
 //
 // Reads the voxels or, with GRADIENT_PRECOMPUTED, directions of gradients, hit_mm and kind of cast_surface, and the clip planes (index space). Writes
 // normal (w = 0).
-#include "old/clip.clh"
-#include "old/gradient.clh"
+#include "lib/clip.clh"
+#include "lib/gradient.clh"
+#include "lib/plane.clh"
 
 kernel void surface_normal(
 #if GRADIENT == GRADIENT_PRECOMPUTED
@@ -16,22 +17,19 @@ kernel void surface_normal(
                            VolumeGrid volume, RayGrid rays,
                            const global float *hit_mm, const global uint *kind, global float4 *normal)
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    float3 n = (float3)(0.0f);
-    if (kind[pixel] != KIND_NOTHING) {
-        Ray ray = pixel_ray(rays, i, j);
-        float3 toward_eye = -ray.dir_world;
-        if (kind[pixel] == KIND_CAP) {
-            Interval interval = volume_interval(volume, ray);
-            clip_interval(&interval, clip_planes, clip_count, ray);
-            n = world_normal(volume, entry_covector(interval, clip_planes, ray), toward_eye);
-        } else {
-            float3 p = clamp_to_domain(volume, ray_at(ray, hit_mm[pixel]).high);
+    Pixels pixels = tile_pixels(rays);
+    Ints met = pixels_ints(kind, pixels);
+    Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
+    Mask hit = met != KIND_NOTHING;
+    if (ANY(hit)) {
+        Ray ray = pixel_ray(rays, pixels);
+        Floats3 toward_eye = {-ray.dir_world.x, -ray.dir_world.y, -ray.dir_world.z};
+        Mask cap = met == KIND_CAP;
+        Mask surface = hit & !cap;
+        if (ANY(surface)) {
+            Floats mm = pixels_floats(hit_mm, pixels);
+            Pair3 at = ray_at(ray, surface ? mm : FLOATS(0.0f));
+            Floats3 p = {at.x.high, at.y.high, at.z.high};
             GradientSource source;
 #if GRADIENT == GRADIENT_PRECOMPUTED
             source.directions = directions;
@@ -39,8 +37,19 @@ kernel void surface_normal(
 #else
             source.voxels = voxels;
 #endif
-            n = field_normal(source, volume, p, toward_eye);
+            Floats3 slope = field_normal(source, volume, clamp_to_domain(volume, p), toward_eye);
+            n.x = surface ? slope.x : n.x;
+            n.y = surface ? slope.y : n.y;
+            n.z = surface ? slope.z : n.z;
+        }
+        if (ANY(cap)) {
+            Interval interval = volume_interval(volume, ray);
+            clip_interval(&interval, clip_planes, clip_count, ray);
+            Floats3 outward = world_normal(volume, entry_covector(interval, clip_planes, ray, cap), toward_eye);
+            n.x = cap ? outward.x : n.x;
+            n.y = cap ? outward.y : n.y;
+            n.z = cap ? outward.z : n.z;
         }
     }
-    normal[pixel] = (float4)(n, 0.0f);
+    put_fours(normal, pixels, n);
 }

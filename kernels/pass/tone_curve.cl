@@ -3,21 +3,23 @@
 //
 // Reads color. Writes display (sRGB-encoded 0..1, opaque).
 #include "lib/color.clh"
-#include "old/ray.clh"
+#include "lib/plane.clh"
+
+static inline Floats shown(Tone tone, Floats light, float background, Floats seen)
+{
+    Floats v = srgb_from_linear(light + background * seen);
+    v = within((v - 0.5f) * tone.contrast + 0.5f + tone.brightness, FLOATS(0.0f), FLOATS(1.0f));
+    return tone.inverse_gamma != 1.0f ? power(v, tone.inverse_gamma) : v;
+}
 
 kernel void tone_curve(RayGrid rays, Tone tone, const global float4 *color, global float4 *display)
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    float4 seen = color[pixel];
-    float3 light = seen.xyz + tone.background.xyz * (1.0f - seen.w);
-    float3 v = (float3)(srgb_from_linear(light.x), srgb_from_linear(light.y), srgb_from_linear(light.z));
-    v = clamp((v - 0.5f) * tone.contrast + 0.5f + tone.brightness, 0.0f, 1.0f);
-    if (tone.inverse_gamma != 1.0f)
-        v = pow(v, (float3)(tone.inverse_gamma));
-    display[pixel] = (float4)(v, 1.0f);
+    Pixels pixels = tile_pixels(rays);
+    Floats4 v = pixels_fours(color, pixels);
+    Floats behind = 1.0f - v.w;
+    v.x = shown(tone, v.x, tone.background.x, behind);
+    v.y = shown(tone, v.y, tone.background.y, behind);
+    v.z = shown(tone, v.z, tone.background.z, behind);
+    v.w = FLOATS(1.0f);
+    put_fours(display, pixels, v);
 }

@@ -1,5 +1,5 @@
 // Both directions of the sRGB curve at each value.
-#include "lib/abi.clh"
+#define LANES 1
 #include "lib/color.clh"
 
 kernel void color(uint count, const global float *values, global float *linear, global float *srgb)

@@ -16,7 +16,11 @@ pub fn shade_surface(
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
     let shaded = normal.is_some();
-    let defines = run.variant.defines().with("SHADED", switch(shaded));
+    let variant = run.variant;
+    let defines = variant
+        .defines()
+        .with("LANES", variant.lanes)
+        .with("SHADED", switch(shaded));
     let pass = run.built.pass(run.device, "shade_surface", defines, || {
         let mut signature = vec![
             value::<RayGrid>("rays"),

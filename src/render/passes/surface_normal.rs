@@ -19,7 +19,7 @@ pub fn surface_normal(
     normal: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
     let variant = run.variant;
-    let defines = gradient.define(variant.defines());
+    let defines = gradient.define(variant.defines().with("LANES", variant.lanes));
     let pass = run.built.pass(run.device, "surface_normal", defines, || {
         let mut signature: Vec<_> = gradient.parameters().collect();
         if gradient.reads_voxels() {

@@ -14,7 +14,8 @@ pub fn tone_curve(
     color: &Buffer<[f32; 4]>,
     display: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let defines = run.variant.defines();
+    let variant = run.variant;
+    let defines = variant.defines().with("LANES", variant.lanes);
     let pass = run.built.pass(run.device, "tone_curve", defines, || {
         vec![
             value::<RayGrid>("rays"),

@@ -15,7 +15,8 @@ pub fn window_value(
     values: &Buffer<f32>,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let defines = run.variant.defines();
+    let variant = run.variant;
+    let defines = variant.defines().with("LANES", variant.lanes);
     let pass = run.built.pass(run.device, "window_value", defines, || {
         vec![
             value::<RayGrid>("rays"),

@@ -151,18 +151,18 @@ mod tests {
 
     #[test]
     fn includes_are_flattened_once_and_lines_keep_their_names() {
-        let text = flatten("pass/cast_surface.cl").unwrap();
+        let text = flatten("pass/exact_surface.cl").unwrap();
         assert!(!text.contains("#include"));
         assert_eq!(text.matches("} RayGrid;").count(), 1);
         assert!(text.contains("#line 1 \"kernels/lib/ray.clh\""));
         // The line after the last include is marked with its own number.
-        let source = read("pass/cast_surface.cl").unwrap();
+        let source = read("pass/exact_surface.cl").unwrap();
         let after = source
             .lines()
-            .position(|l| l.contains("lib/octree.clh"))
+            .position(|l| l.contains("lib/crossing.clh"))
             .unwrap()
             + 2;
-        assert!(text.contains(&format!("#line {after} \"kernels/pass/cast_surface.cl\"")));
+        assert!(text.contains(&format!("#line {after} \"kernels/pass/exact_surface.cl\"")));
     }
 
     #[test]

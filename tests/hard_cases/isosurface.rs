@@ -161,8 +161,16 @@ fn two_roots_in_a_step() {
     );
 }
 
-/// "Above" for "at or above", wherever slices of cells lie on one side of the iso value.
-const ABOVE_ONLY: Mutant = kernel("lib/beam.clh", &[("value >= iso ?", "value > iso ?")]);
+/// "Above" for "at or above", at the ends of a cell's pieces and of slices beyond them.
+const ABOVE_ONLY: Mutant = kernel(
+    "lib/crossing.clh",
+    &[
+        ("Mask a_in = f_a >= 0.0f;", "Mask a_in = f_a > 0.0f;"),
+        ("Mask b_in = f_b >= 0.0f;", "Mask b_in = f_b > 0.0f;"),
+        ("b_in ^ (f_end >= 0.0f)", "b_in ^ (f_end > 0.0f)"),
+        ("region.class == CLASS_ABOVE ? 1.0f : -1.0f", "-1.0f"),
+    ],
+);
 
 #[test]
 fn plateau() {

@@ -159,7 +159,7 @@ mod tests {
         let source = read("pass/exact_surface.cl").unwrap();
         let after = source
             .lines()
-            .position(|l| l.contains("lib/crossing.clh"))
+            .position(|l| l == "#include \"lib/crossing.clh\"")
             .unwrap()
             + 2;
         assert!(text.contains(&format!("#line {after} \"kernels/pass/exact_surface.cl\"")));

@@ -301,9 +301,15 @@ fn the_switches_are_read_from_the_kernels() {
             ("SHADED", 2)
         ])
     );
-    assert_eq!(of("pass/surface_normal.cl"), named(&[("GRADIENT", 4)]));
-    assert_eq!(of("pass/shade_surface.cl"), named(&[("SHADED", 2)]));
-    assert_eq!(of("pass/tone_curve.cl"), named(&[]));
+    assert_eq!(
+        of("pass/surface_normal.cl"),
+        named(&[("GRADIENT", 4), ("LANES", 3)])
+    );
+    assert_eq!(
+        of("pass/shade_surface.cl"),
+        named(&[("LANES", 3), ("SHADED", 2)])
+    );
+    assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
 }
 
 #[test]

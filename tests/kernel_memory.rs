@@ -237,8 +237,8 @@ fn a_write_by_two_work_items_is_reported() {
     };
     let under = under.with_broken(
         "pass/exact_surface.cl",
-        "    hit_mm[pixel] =",
-        "    hit_mm[pixel / 2u] =",
+        "SCATTER(pixels.inside, hit_mm, pixels.index, t);",
+        "SCATTER(pixels.inside, hit_mm, pixels.index / 2, t);",
     );
     let volume = under.phantom("noise --size 3x5x7");
     let report = under.render(&volume, SMALL, "broken.exr");
@@ -293,7 +293,11 @@ fn aimed_rays_stay_within_their_buffers() {
     };
     let report = under.test("aimed_rays_under_oclgrind");
     assert!(report.is_empty(), "{report}");
-    let under = under.with_broken("test/aimed_rays.cl", "    hit[i] =", "    hit[i + 1u] =");
+    let under = under.with_broken(
+        "test/aimed_rays.cl",
+        "SCATTER(there, hit, i, t);",
+        "SCATTER(there, hit, i + 1, t);",
+    );
     let report = under.test("aimed_rays_under_oclgrind");
     assert!(
         report.contains("Invalid write of size 4 at global memory"),

@@ -85,7 +85,7 @@ impl Model {
         };
         let options = variant(U8, Filter::Linear, 8).defines().options();
         let value = options.split(&format!("-D {name}=")).nth(1).unwrap();
-        let digits = value.split('u').next().unwrap();
+        let digits = value.split(' ').next().unwrap();
         digits.parse().unwrap()
     }
 }

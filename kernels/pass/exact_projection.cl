@@ -230,10 +230,11 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
     Beam beam;
     bool together = FILTER_LINEAR && cast.traverse == TRAVERSE_DISTANCE && ANY(alive) && beam_start(&beam, &walk, levels, volume, alive);
 #if PROJECTION == PROJECTION_EXTREMUM
+    // Where most is to be expected, first: what the rays reach there all else must beat.
+    BeamRegion highest = {0, 0, CLASS_VISIT};
+    Search ahead = *search;
     if (together) {
-        // Where most is to be expected, first: what the rays reach there all else must beat.
-        BeamRegion highest = highest_layer(&beam, node_class, node_range, cast.sign, nodes_tested);
-        Search ahead = *search;
+        highest = highest_layer(&beam, node_class, node_range, cast.sign, nodes_tested);
         CellWalk from = walk;
         Mask behind = alive & before_region(&beam, highest, &walk);
         Mask there = leap_to_region(&beam, highest, &from, behind) | (alive & !behind);
@@ -252,6 +253,15 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
                 pass_by(search, cast, alive);
                 break;
             }
+#if PROJECTION == PROJECTION_EXTREMUM
+            if (region.low >= highest.low && region.low < highest.high) {
+                // Looked at already.
+                Mask more = alive & ahead.most > search->most;
+                search->most = more ? ahead.most : search->most;
+                search->most_mm = more ? ahead.most_mm : search->most_mm;
+                continue;
+            }
+#endif
             Mask behind = alive & before_region(&beam, region, &walk);
             pass_by(search, cast, behind);
             behind = behind & !search->done;

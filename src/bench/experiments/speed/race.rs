@@ -125,7 +125,7 @@ fn placed(specimen: &Specimen, scene: &Scene, round: usize, rounds: usize) -> Sc
 enum Turn<'a> {
     Ours(&'a Scene),
     Sampling(&'a Scene),
-    Peer(PeerScene),
+    Peer(PeerScene, &'a Scene),
 }
 
 /// All rows: of the contenders, of sampling alone, of the peer.
@@ -158,7 +158,7 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
             && let Some((row, scene)) = rival(peer, specimen, first, &truth)?
         {
             rows.push(row);
-            turns.push(Turn::Peer(scene));
+            turns.push(Turn::Peer(scene, &first.scene));
         }
     }
     let straight = contenders.first().map(|one| Scene {
@@ -199,8 +199,10 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
         Ok(match (turn, peer.as_deref_mut()) {
             (Turn::Ours(scene), _) => Taken::of(&time(&mut renderer, &there(scene))?),
             (Turn::Sampling(scene), _) => sampled(&mut renderer, &there(scene))?,
-            (Turn::Peer(scene), Some(peer)) => Taken::by(peer.time(scene)?),
-            (Turn::Peer(_), None) => return Err(Error::failed("a peer has ended too early")),
+            (Turn::Peer(ready, scene), Some(peer)) => {
+                Taken::by(peer.time_from(ready, &there(scene).camera)?)
+            }
+            (Turn::Peer(..), None) => return Err(Error::failed("a peer has ended too early")),
         })
     });
     bench.progress.end();

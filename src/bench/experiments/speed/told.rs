@@ -69,11 +69,12 @@ pub fn conduct(bench: &Bench) -> Vec<String> {
             judged_pixels(bench.effort)
         ),
     ];
-    told.push(match &bench.peer {
-        Some(_) => "a peer draws the middle frame, anew each time".into(),
-        None => "another renderer beside these rows: scripts/peers/setup.sh sets VTK up, and \
-                 scripts/peers/speed.sh runs this experiment with it"
-            .into(),
-    });
+    if bench.peer.is_none() {
+        told.push(
+            "another renderer beside these rows: scripts/peers/setup.sh sets VTK up, and \
+             scripts/peers/speed.sh runs this experiment with it"
+                .into(),
+        );
+    }
     told
 }

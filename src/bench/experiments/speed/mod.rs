@@ -6,6 +6,7 @@ mod errors;
 mod medium;
 mod race;
 mod row;
+mod section;
 mod told;
 
 use super::super::ways::TestVolume;
@@ -67,6 +68,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
                 })
             })?;
             row::tabulate(&mut outcome.table, &subject.name, side_px, &raced);
+            outcome.sections.push(section::section(&place, &raced));
             outcome.findings.extend(told::race(&place, &raced));
             bench.so_far(&outcome)?;
         }

@@ -71,12 +71,11 @@ impl Raced {
         median(&mut shares.collect::<Option<Vec<f64>>>()?)
     }
 
-    /// While it casts: the median of the frames'.
+    /// While it casts, in the frame that was disturbed least.
     pub fn samples_per_s(&self) -> Option<f64> {
-        let samples = self.samples? as f64;
-        let rates = self.taken.iter();
-        let rates = rates.map(|one| Some(1e3 * samples / one.cast_ms?));
-        median(&mut rates.collect::<Option<Vec<f64>>>()?)
+        let casts = self.taken.iter().map(|one| one.cast_ms);
+        let casts: Times = casts.collect::<Option<_>>()?;
+        Some(1e3 * self.samples? as f64 / casts.min_ms())
     }
 
     /// The samples a second as a share of those of `most`: the median of the rounds' own.

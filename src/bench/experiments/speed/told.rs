@@ -60,8 +60,8 @@ pub fn conduct(bench: &Bench) -> Vec<String> {
             cores()
         ),
         "samples are those of a frame from the middle of the camera's way, of exact ways the cells that \
-         were walked; their rate is over the cast's time alone, and sampling alone follows the same \
-         camera's rays straight through the volume, one sample a voxel"
+         were walked; their rate is over the least time of the cast alone, and sampling alone follows the \
+         same camera's rays straight through the volume, one sample a voxel"
             .into(),
         format!(
             "errors are against the double-precision reference in {} pixels drawn at random of the \

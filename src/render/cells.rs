@@ -1,4 +1,4 @@
-//! Which cells a surface may cross: a bit each, once per iso value.
+//! Which cells a ray must look at: a bit each, once per iso value or transfer function.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,16 +9,38 @@ use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
 use super::classify::Class;
+use super::medium::Knots;
+use super::ranges::ValueRanges;
 
-/// A bit per cell, x fastest, the lowest bit of a word first: whether its corners lie on both sides of
-/// `iso` (stored units), or so near to it that `iso_error` leaves their side uncertain. Only leaves of
-/// [`Class::Visit`] hold such cells; `classes` are those of the octree's nodes.
+/// The cells whose corners lie on both sides of `iso` (stored units), or so near to it that `iso_error`
+/// leaves their side uncertain. `classes` are those of the octree's nodes.
 pub fn crossed(
     volume: &Volume,
     octree: &Octree,
     classes: &[u8],
     iso: f32,
     iso_error: f32,
+) -> Vec<u32> {
+    visited(volume, octree, classes, |range| {
+        may_cross(range, iso, iso_error)
+    })
+}
+
+/// The cells in which some value absorbs light. `classes` are those of the octree's nodes.
+pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots) -> Vec<u32> {
+    let ranges = ValueRanges::new(knots);
+    visited(volume, octree, classes, |[least, most]| {
+        !ranges.is_transparent(least, most)
+    })
+}
+
+/// A bit per cell, x fastest, the lowest bit of a word first: whether the range of its corners matters.
+/// Only leaves of [`Class::Visit`] hold such cells.
+fn visited(
+    volume: &Volume,
+    octree: &Octree,
+    classes: &[u8],
+    matters: impl Fn([f32; 2]) -> bool + Sync,
 ) -> Vec<u32> {
     let cells = volume.dims().cells().map(|n| n as usize);
     let count: usize = cells.iter().product();
@@ -40,8 +62,7 @@ pub fn crossed(
             for z in z {
                 for y in y.clone() {
                     for x in x.clone() {
-                        let range = range_of(voxels, volume, [x, y, z]);
-                        if may_cross(range, iso, iso_error) {
+                        if matters(range_of(voxels, volume, [x, y, z])) {
                             let cell = (z * cells[1] + y) * cells[0] + x;
                             words[cell / 32].fetch_or(1 << (cell % 32), Ordering::Relaxed);
                         }

@@ -1,10 +1,13 @@
 //! The passes of `dvr`: classify the nodes, one cast.
 
+use std::time::Instant;
+
 use crate::error::{Error, Result};
 use crate::gpu::Buffer;
 use crate::scene::{Emission, Phong, QuadratureMethod, Rgb, TransferFunction};
 
 use super::abi::EmissionCast;
+use super::cells;
 use super::classify;
 use super::homogeneity::Limit;
 use super::medium::Knots;
@@ -33,6 +36,11 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         let limit = homogeneity.map(|homogeneity| Limit::new(homogeneity, transfer, view.volume));
         classify::by_opacity(view.octree, &knots, skip, limit)
     })?;
+    let start = Instant::now();
+    let classes = classify::by_opacity(view.octree, &knots, skip, None);
+    let cells = cells::absorbing(view.volume, view.octree, &classes, &knots);
+    let cells = Buffer::upload(run.device, "absorbing cells", &cells)?;
+    run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
     let on_device = match quadrature.method {
         QuadratureMethod::Preintegrated => transfer_on_device(run, &knots.smooth(), true)?,
         QuadratureMethod::Adaptive => transfer_on_device(run, &knots, true)?,
@@ -59,6 +67,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             view.uploaded,
             view.clip,
             &node_class,
+            &cells,
             averages.as_ref(),
             &on_device,
             &view.rays,

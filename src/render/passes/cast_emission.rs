@@ -37,6 +37,7 @@ pub fn cast_emission(
     volume: &DeviceVolume,
     clip: &DeviceClip,
     node_class: &Buffer<u8>,
+    cells: &Buffer<u32>,
     node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -51,7 +52,8 @@ pub fn cast_emission(
     let gradient = shaded_by.unwrap_or(DeviceGradient::none());
     let defines = gradient
         .define(variant.defines())
-        .with("QUADRATURE", format!("{}u", quadrature_constant(method)))
+        .with("LANES", variant.lanes)
+        .with("QUADRATURE", quadrature_constant(method))
         .with("HOMOGENEOUS", switch(node_average.is_some()))
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
@@ -60,6 +62,7 @@ pub fn cast_emission(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
         ];
@@ -85,6 +88,7 @@ pub fn cast_emission(
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
+        .input(cells)
         .input(&transfer.values)
         .input(&transfer.colors);
     if integrates {

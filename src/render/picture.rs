@@ -123,6 +123,7 @@ pub fn surface(
             view.uploaded,
             view.clip,
             &node_class,
+            &cells,
             &view.rays,
             &cast,
             &mut hit_mm,

@@ -16,6 +16,7 @@ pub fn cast_surface(
     volume: &DeviceVolume,
     clip: &DeviceClip,
     node_class: &Buffer<u8>,
+    cells: &Buffer<u32>,
     rays: &RayGrid,
     cast: &SurfaceCast,
     hit_mm: &mut Buffer<f32>,
@@ -27,6 +28,7 @@ pub fn cast_surface(
     let variant = run.variant;
     let defines = variant
         .defines()
+        .with("LANES", variant.lanes)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_surface", defines, || {
@@ -34,6 +36,7 @@ pub fn cast_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
@@ -53,6 +56,7 @@ pub fn cast_surface(
         .input(&volume.voxels)
         .input(node_class)
         .input(&volume.levels)
+        .input(cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

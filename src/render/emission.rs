@@ -113,6 +113,7 @@ fn transfer_on_device(run: &Run, knots: &Knots, with_sums: bool) -> Result<Devic
         sums: Buffer::upload(run.device, "transfer function's sums", &sums)?,
         knots: knots.values.len() as u32,
         color_spread: knots.color_spread(),
+        absorbing: knots.absorbing(),
     })
 }
 
@@ -147,6 +148,10 @@ fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -
         },
         bound: ((1.0 - ENDED_EARLY) * bound) as f32,
         color_spread: on_device.color_spread,
+        absorbs_from: on_device.absorbing[0],
+        absorbs_to: on_device.absorbing[1],
+        pad_0: 0,
+        pad_1: 0,
     }
 }
 

@@ -18,6 +18,8 @@ pub struct DeviceTransfer {
     pub knots: u32,
     /// The most by which the knots' colours differ in a channel.
     pub color_spread: f32,
+    /// Stored units; outside nothing absorbs.
+    pub absorbing: [f32; 2],
 }
 
 impl DeviceTransfer {

@@ -83,6 +83,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             view.uploaded,
             view.clip,
             &node_class,
+            &cells,
             &on_device,
             &view.rays,
             &cast,

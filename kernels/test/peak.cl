@@ -1,5 +1,5 @@
-// The peak between two samples of each ray: rays hold the ends' t, the sign and the goal. A work-item
-// follows one ray.
+// The peak between two samples of each ray: rays hold the ends' t, the sign and the goal.
+#define LANES 1
 #include "lib/peak.clh"
 
 kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 start, float4 dir, float length_mm, uint first,

@@ -1,15 +1,10 @@
 //! The passes of `dvr`: classify the nodes, one cast.
 
-use std::time::Instant;
-
 use crate::error::{Error, Result};
 use crate::gpu::Buffer;
 use crate::scene::{Emission, Phong, QuadratureMethod, Rgb, TransferFunction};
 
 use super::abi::EmissionCast;
-use super::cells;
-use super::classify;
-use super::homogeneity::Limit;
 use super::medium::Knots;
 use super::passes::{DeviceTransfer, Run, adaptive_emission, cast_emission};
 use super::picture::View;
@@ -31,16 +26,6 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         ));
     }
     let knots = Knots::of(transfer, view.volume);
-    let skip = view.scene.sampling.skip;
-    let node_class = view.upload_classes(run, || {
-        let limit = homogeneity.map(|homogeneity| Limit::new(homogeneity, transfer, view.volume));
-        classify::by_opacity(view.octree, &knots, skip, limit)
-    })?;
-    let start = Instant::now();
-    let classes = classify::by_opacity(view.octree, &knots, skip, None);
-    let cells = cells::absorbing(view.volume, view.octree, &classes, &knots);
-    let cells = Buffer::upload(run.device, "absorbing cells", &cells)?;
-    run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
     let on_device = match quadrature.method {
         QuadratureMethod::Preintegrated => transfer_on_device(run, &knots.smooth(), true)?,
         QuadratureMethod::Adaptive => transfer_on_device(run, &knots, true)?,
@@ -66,8 +51,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             shaded_by,
             view.uploaded,
             view.clip,
-            &node_class,
-            &cells,
+            view.classified,
             averages.as_ref(),
             &on_device,
             &view.rays,
@@ -82,8 +66,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             shaded_by,
             view.uploaded,
             view.clip,
-            &node_class,
-            &cells,
+            view.classified,
             &on_device,
             &view.rays,
             &cast,
@@ -102,7 +85,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         kind: None,
         certificate: None,
         counters,
-        other_bytes: node_class.bytes() + on_device.bytes() + averages_bytes,
+        other_bytes: on_device.bytes() + averages_bytes,
     })
 }
 

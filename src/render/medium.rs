@@ -6,6 +6,7 @@ use crate::volume::Volume;
 use super::twins::stored;
 
 /// Knots, ascending in value.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Knots {
     /// Stored units.
     pub values: Vec<f32>,

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::classified::Classified;
 
 use super::{
     Counters, DeviceClip, DeviceGradient, DeviceTransfer, DeviceVolume, Run, levels, switch, voxels,
@@ -16,8 +17,7 @@ pub fn adaptive_emission(
     shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
-    cells: &Buffer<u32>,
+    classified: &Classified,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
     cast: &EmissionCast,
@@ -61,9 +61,9 @@ pub fn adaptive_emission(
     let launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
-        .input(cells)
+        .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors)
         .input(&transfer.sums)

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::classified::Classified;
 use crate::render::variant::quadrature_constant;
 use crate::scene::QuadratureMethod;
 
@@ -38,8 +39,7 @@ pub fn cast_emission(
     shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
-    cells: &Buffer<u32>,
+    classified: &Classified,
     node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -88,9 +88,9 @@ pub fn cast_emission(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
-        .input(cells)
+        .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors);
     if integrates {

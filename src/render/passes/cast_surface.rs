@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
+use crate::render::classified::Classified;
 
 use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
@@ -15,8 +16,7 @@ pub fn cast_surface(
     run: &mut Run,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
-    cells: &Buffer<u32>,
+    classified: &Classified,
     rays: &RayGrid,
     cast: &SurfaceCast,
     hit_mm: &mut Buffer<f32>,
@@ -54,9 +54,9 @@ pub fn cast_surface(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
-        .input(cells)
+        .input(&classified.cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

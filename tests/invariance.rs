@@ -301,6 +301,25 @@ fn any_work_group_gives_the_same_bytes() {
     }
 }
 
+/// A picture by fixed steps and without; an emission by its own rule and by the adaptive one.
+fn cast_by_each_method(picture: Picture) -> Vec<(Picture, SamplingMethod)> {
+    let mut casts = vec![(picture.clone(), SamplingMethod::Fixed)];
+    match picture {
+        Picture::Emission(emission) => {
+            let quadrature = Quadrature::of(QuadratureMethod::Adaptive);
+            casts.push((
+                Picture::Emission(Emission {
+                    quadrature,
+                    ..emission
+                }),
+                SamplingMethod::Fixed,
+            ));
+        }
+        exact => casts.push((exact, SamplingMethod::Exact)),
+    }
+    casts
+}
+
 #[test]
 fn any_number_of_lanes_gives_the_same_bytes() {
     let Some(device) = common::device() else {
@@ -311,18 +330,17 @@ fn any_number_of_lanes_gives_the_same_bytes() {
     let flat = volume_of([1, 24, 17], |x, y, z| (hash(x, y, z) * 255.0) as u8);
     // What reads voxels differs with their type, all else is the same for all types.
     for (volume, modes) in [
-        (tubes(), &["iso", "mip", "minip", "mean", "lmip"][..]),
+        (tubes(), &["iso", "mip", "minip", "mean", "lmip", "dvr"][..]),
         (mixed(), &["iso"]),
         (signed, &["iso"]),
         (wide, &["mip"]),
         (flat, &["iso", "mip"]),
     ] {
         let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
-        let pictures = pictures(volume.range().max);
-        for picture in pictures
-            .iter()
-            .filter(|picture| modes.contains(&picture.mode()))
-        {
+        let wanted = pictures(volume.range().max)
+            .into_iter()
+            .filter(|picture| modes.contains(&picture.mode()));
+        for (picture, method) in wanted.flat_map(cast_by_each_method) {
             let [one, eight, sixteen] = Lanes::ALL.map(|lanes| {
                 let options = Options {
                     lanes: Some(lanes),
@@ -331,15 +349,16 @@ fn any_number_of_lanes_gives_the_same_bytes() {
                 let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
                 let frames = [Traverse::Hierarchical, Traverse::Distance].map(|traverse| {
                     let mut scene = common::scene(&volume, SIZE_PX, picture.clone());
-                    scene.sampling.method = SamplingMethod::Exact;
+                    scene.sampling.method = method;
                     scene.sampling.traverse = traverse;
                     picture_bits(&renderer.render(&scene, Wanted::ALL).unwrap().frame)
                 });
-                assert!(frames[0] == frames[1], "{} {lanes} lanes", picture.mode());
+                let what = format!("{} {method:?} {lanes} lanes", picture.mode());
+                assert!(frames[0] == frames[1], "{what}");
                 frames
             });
-            assert!(one == eight, "{} 8 lanes", picture.mode());
-            assert!(one == sixteen, "{} 16 lanes", picture.mode());
+            assert!(one == eight, "{} {method:?} 8 lanes", picture.mode());
+            assert!(one == sixteen, "{} {method:?} 16 lanes", picture.mode());
         }
     }
 }

@@ -30,6 +30,7 @@ pub fn adaptive_emission(
     let gradient = shaded_by.unwrap_or(DeviceGradient::none());
     let defines = gradient
         .define(variant.defines())
+        .with("LANES", variant.lanes)
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run
@@ -39,6 +40,7 @@ pub fn adaptive_emission(
                 voxels(variant),
                 input::<u8>("node_class"),
                 levels(),
+                input::<u32>("cells"),
                 input::<f32>("knot_values"),
                 input::<[f32; 4]>("knot_colors"),
                 input::<[f32; 4]>("knot_sums"),
@@ -61,6 +63,7 @@ pub fn adaptive_emission(
         .input(&volume.voxels)
         .input(&classified.node_class)
         .input(&volume.levels)
+        .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors)
         .input(&transfer.sums)

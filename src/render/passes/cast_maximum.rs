@@ -28,7 +28,8 @@ pub fn cast_maximum(
     let variant = run.variant;
     let defines = variant
         .defines()
-        .with("PROJECTION", format!("{}u", which as u32))
+        .with("LANES", variant.lanes)
+        .with("PROJECTION", which as u32)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_maximum", defines, || {

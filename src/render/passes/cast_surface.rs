@@ -28,6 +28,7 @@ pub fn cast_surface(
     let variant = run.variant;
     let defines = variant
         .defines()
+        .with("LANES", variant.lanes)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_surface", defines, || {
@@ -35,6 +36,7 @@ pub fn cast_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
@@ -54,6 +56,7 @@ pub fn cast_surface(
         .input(&volume.voxels)
         .input(&classified.node_class)
         .input(&volume.levels)
+        .input(&classified.cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

@@ -109,6 +109,14 @@ impl ImageSize {
         Ok(Self { width, height })
     }
 
+    /// So many pixels side by side.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn row(pixels: usize) -> Result<Self> {
+        Self::new(u32::try_from(pixels).unwrap_or(u32::MAX), 1)
+    }
+
     pub fn width(self) -> u32 {
         self.width
     }

@@ -6,9 +6,10 @@ mod common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 18] = [
+const EXPERIMENTS: [&str; 19] = [
     "vessels",
     "pareto",
+    "speed",
     "traversals",
     "convergence",
     "rays",
@@ -50,6 +51,9 @@ fn wrong_usage_says_what_there_is() {
     for (line, wanted) in [
         ("bench rays ball.nrrd", "takes no volumes"),
         ("bench vessels --rays 5", "no effect"),
+        ("bench vessels --frames 5", "no effect"),
+        ("bench b1 --peer true", "no effect"),
+        ("bench speed --frames 0", "is not a whole number from 1 on"),
         ("bench rays --rays 0", "is not a whole number from 1 on"),
         ("bench vessels --quick --full", "do not go together"),
         ("bench vessels --scene both.toml", "do not go together"),
@@ -66,6 +70,10 @@ fn wrong_usage_says_what_there_is() {
         ("bench b1 --iso 3", "no effect without a volume"),
         ("bench b1 ball.nrrd --iso 3x", "not a value"),
         ("bench rays --protocol orbit", "times no frames"),
+        (
+            "bench speed --protocol orbit",
+            "moves the camera in its own way",
+        ),
         ("bench b1 --protocol still", "not a protocol"),
         ("bench b1 --restart", "no effect without '--output'"),
     ] {

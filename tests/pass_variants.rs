@@ -176,6 +176,9 @@ where
                 assert_eq!(rendering.frame.nodes.is_some(), wanted.counters);
                 launches += rendering.passes.len();
             }
+            let mut straight = common::scene(&volume, 8, picture.clone());
+            straight.sampling.filter = filter;
+            assert!(renderer.sample_field(&straight).unwrap().samples() > 0);
         }
     }
     launches

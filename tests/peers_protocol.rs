@@ -38,6 +38,7 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     let volume = volume();
     let mut scene = scene_of(&volume, maximum());
     scene.tone.background = Rgb([0.2; 3]);
+    let elsewhere = scene.camera.turned(DVec3::Z, DVec3::ZERO, 30.0);
     assert_eq!(peer.load(&volume).unwrap(), 1.5);
     prepared(&mut peer, &volume, &scene).unwrap();
     let scene = prepared(&mut peer, &volume, &scene).unwrap();
@@ -47,12 +48,16 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     assert_eq!((picture.time.ms, picture.time.cpu_ms), (7.0, Some(13.0)));
     let time = peer.time(&scene).unwrap();
     assert_eq!((time.ms, time.cpu_ms), (6.0, None));
+    assert_eq!(peer.time_from(&scene, &elsewhere).unwrap(), time);
     peer.forget().unwrap();
     let heard = fake.heard();
     assert_eq!(heard[2]["scene"]["id"], 1);
     assert_eq!(heard[3]["render"]["id"], 1);
     assert_eq!(heard[4], json!({"render": {"id": 1}}));
-    assert_eq!(heard[5], json!({"forget": {}}));
+    let eye = &heard[5]["render"]["camera"]["eye"];
+    assert_eq!(*eye, json!(elsewhere.eye_world().to_array()));
+    assert_ne!(*eye, heard[2]["scene"]["camera"]["eye"]);
+    assert_eq!(heard[6], json!({"forget": {}}));
     assert_eq!(picture.frame.color, [[1.0; 4], [0.5; 4]]);
     assert_eq!(picture.frame.depth, Some(vec![1.0, f32::INFINITY]));
     // Shown over a background of one fifth of white.

@@ -3,8 +3,6 @@
 #
 #   scripts/peers/compare.sh VOLUME -o DIR [more options of angioray compare]
 set -euo pipefail
-here="$(dirname "$0")"
-home="$(cd "$here/../.." && pwd)"
 
 case "${1:---help}" in -h | --help)
     printf 'usage: scripts/peers/compare.sh VOLUME -o DIR [more options of angioray compare]\n'
@@ -12,11 +10,4 @@ case "${1:---help}" in -h | --help)
     ;;
 esac
 
-"$home/scripts/setup.sh"
-python="$("$home/scripts/peers/setup.sh")"
-cargo build --release --locked --manifest-path "$home/Cargo.toml"
-# The report tells the command: by paths from here, which mean the same on another machine. The
-# virtual environment's Python is a link that must not be followed.
-from_here() { realpath --no-symlinks --relative-to=. "$1"; }
-peer="$(printf '%q %q' "$(from_here "$python")" "$(from_here "$home/scripts/peers/vtk_peer.py")")"
-exec "$home/target/release/angioray" compare "$@" --peer "$peer"
+exec "$(dirname "$0")/with_vtk.sh" compare "$@"

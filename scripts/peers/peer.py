@@ -2,7 +2,8 @@
 
 A renderer is an object with
   hello() -> dict, load(volume) -> None, prepare(scene) -> Scene or Unsupported raised,
-and a scene an object with note, render() -> None, color() and depth() -> arrays.
+and a scene an object with note, render(camera) -> None, color() and depth() -> arrays; the camera
+is the scene's own where it is None.
 """
 import json
 import os
@@ -35,7 +36,7 @@ class Talk:
         def prepare():
             prepared = self.renderer.prepare(scene)
             # What is made at the first picture (textures, gradients, shaders) is made for all.
-            prepared.render()
+            prepared.render(None)
             return prepared
 
         try:
@@ -47,7 +48,7 @@ class Talk:
 
     def render(self, request):
         scene = self.scenes[request["id"]]
-        _, ms, cpu_ms = milliseconds(scene.render)
+        _, ms, cpu_ms = milliseconds(lambda: scene.render(request.get("camera")))
         answer = {"ms": ms, "cpu_ms": cpu_ms}
         if "color" in request:
             scene.color().astype("<f4").tofile(request["color"])

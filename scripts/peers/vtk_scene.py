@@ -19,8 +19,8 @@ class Scene:
         self.drawn = method.make(self.renderer, volume, told, **method.arguments)
         self.note = "; ".join(self.drawn.notes) or None
 
-    def render(self):
-        set_camera(self.renderer, self.told["camera"], self.center_world)
+    def render(self, camera):
+        set_camera(self.renderer, camera or self.told["camera"], self.center_world)
         self.window.render()
 
     def color(self):

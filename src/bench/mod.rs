@@ -64,6 +64,11 @@ pub struct Bench<'a> {
     pub specimens: Vec<Specimen>,
     /// How many rays, where the experiment counts rays and the user said so.
     pub rays: Option<u64>,
+    /// How often each setting is timed, where the experiment leaves it to the user and the user said
+    /// so.
+    pub frames: Option<u32>,
+    /// The command line of a program to race, where the experiment does.
+    pub peer: Option<String>,
     /// Who is told how far the work is.
     pub progress: &'a dyn Progress,
     /// Where the user wants the results kept.
@@ -91,6 +96,8 @@ impl Bench<'_> {
             ("effort", self.effort.name().into()),
             ("protocol", told(self.protocol.map(|one| one.to_string()))),
             ("rays", told(self.rays.map(|rays| rays.to_string()))),
+            ("frames", told(self.frames.map(|frames| frames.to_string()))),
+            ("peer", self.peer.clone().unwrap_or_else(|| "none".into())),
             ("volumes", volumes.collect::<Vec<_>>().join("; ")),
             (
                 "device",
@@ -267,6 +274,9 @@ pub struct Experiment {
     pub counts_rays: bool,
     /// Whether the protocol under which frames are timed is.
     pub times_frames: bool,
+    /// Whether [`Bench::frames`] and [`Bench::peer`] are: it times whole frames beside another
+    /// program's.
+    pub races: bool,
     pub run: fn(&Bench) -> Result<Outcome>,
 }
 

@@ -63,6 +63,16 @@ group! {
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         rays: Count<u64>,
 
+        /// Frames of which each mode is timed in the experiment speed [default: as many as take it
+        /// about three seconds, 5 to 41]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        frames: Count,
+
+        /// Another renderer to race in the experiment speed, as a command line that speaks the protocol
+        /// of scripts/peers/README.md in angioray's source
+        #[arg(long, value_name = "COMMAND")]
+        peer: String,
+
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
         /// pictures; made where there is none. It fills as the work goes on: the same command goes
         /// on where it was stopped
@@ -103,6 +113,7 @@ Example:
   angioray bench vessels head.nrrd cta.mha -o results --full
   angioray bench pareto head.nrrd -o results --quick
   angioray bench tolerance -o results
+  angioray bench speed -o speed --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
   angioray bench b1 head.nrrd --iso 50% --protocol orbit -o results
   angioray bench traversals head_256x256x256_uint8.raw.gz",
     );
@@ -147,7 +158,16 @@ impl BenchArguments {
         }
         if options.protocol.is_some() && !experiment.times_frames {
             return Err(Error::usage(format!(
-                "'--protocol' has no effect in the experiment '{name}', which times no frames"
+                "'--protocol' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
+            )));
+        }
+        let races = [
+            ("--frames", options.frames.is_some()),
+            ("--peer", options.peer.is_some()),
+        ];
+        if let Some((flag, _)) = races.iter().find(|(_, given)| *given && !experiment.races) {
+            return Err(Error::usage(format!(
+                "'{flag}' has no effect in the experiment '{name}'"
             )));
         }
         if options.iso.is_some() && volumes.is_empty() {
@@ -201,6 +221,8 @@ impl BenchArguments {
             protocol: options.protocol,
             specimens,
             rays: options.rays.map(Count::get),
+            frames: options.frames.map(Count::get),
+            peer: options.peer,
             progress: &bars,
             store: None,
         };

@@ -100,6 +100,33 @@ impl Frame {
         }
     }
 
+    /// Some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in this
+    /// order.
+    ///
+    /// # Errors
+    /// No pixel, or more than a row has.
+    ///
+    /// # Panics
+    /// A pixel outside the picture.
+    pub fn picked(&self, pixels: &[u32]) -> Result<Self> {
+        fn plane<T: Copy>(plane: &Option<Vec<T>>, pixels: &[u32]) -> Option<Vec<T>> {
+            let plane = plane.as_ref()?;
+            Some(pixels.iter().map(|&pixel| plane[pixel as usize]).collect())
+        }
+        Ok(Self {
+            size: ImageSize::row(pixels.len())?,
+            color: pixels.iter().map(|&p| self.color[p as usize]).collect(),
+            display: plane(&self.display, pixels),
+            depth: plane(&self.depth, pixels),
+            normal: plane(&self.normal, pixels),
+            value: plane(&self.value, pixels),
+            steps: plane(&self.steps, pixels),
+            nodes: plane(&self.nodes, pixels),
+            kind: plane(&self.kind, pixels),
+            certificate: plane(&self.certificate, pixels),
+        })
+    }
+
     /// The planes that are there, the colour first, as bytes in the machine's order.
     pub fn bytes_mut(&mut self) -> Vec<&mut [u8]> {
         fn bytes<T: bytemuck::Pod>(plane: &mut Option<Vec<T>>) -> Option<&mut [u8]> {

@@ -49,6 +49,7 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/cast_surface.cl",
     "pass/exact_projection.cl",
     "pass/exact_surface.cl",
+    "pass/sample_field.cl",
     "pass/shade_surface.cl",
     "pass/surface_normal.cl",
     "pass/tone_curve.cl",

@@ -62,6 +62,20 @@ pub fn judge(
     })
 }
 
+/// How wrong a picture is in some of its pixels, of which `truth` is the reference's
+/// ([`reference::render_pixels`](crate::reference::render_pixels)). What looks at pixels beside each
+/// other, SSIM and FLIP, cannot be told.
+///
+/// # Errors
+/// As [`figures`].
+pub fn judge_pixels(truth: &Frame, frame: &Frame, pixels: &[u32], scale: Scale) -> Result<Figures> {
+    Ok(Figures {
+        ssim: None,
+        flip: None,
+        ..figures(truth, &frame.picked(pixels)?, scale)?
+    })
+}
+
 /// What one picture for display took.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTime {

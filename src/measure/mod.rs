@@ -17,7 +17,7 @@ mod wrongness;
 pub use counts::Counts;
 pub use family::family;
 pub use interleaved::{Times, interleaved, rounds};
-pub use judged::{FrameTime, Judged, judge, judged_planes, scale_of, time};
+pub use judged::{FrameTime, Judged, judge, judge_pixels, judged_planes, scale_of, time};
 pub use memory::host_peak_bytes;
 pub use pareto::{TIME_NOISE, Tradeoff, front};
 pub use peer::{Peer, PeerFrame, PeerScene, PeerTime, Readiness};

@@ -27,6 +27,7 @@ pub use tracer::{Sight, Tracer};
 use rayon::prelude::*;
 
 use crate::error::Result;
+use crate::extent::ImageSize;
 use crate::frame::{Certificate, Frame, Kind, Wanted};
 use crate::progress::Progress;
 use crate::scene::{Picture, Scene};
@@ -52,13 +53,9 @@ pub fn render(
     progress.begin("reference", u64::from(size.height()));
     for first in (0..size.height()).step_by(BAND_ROWS as usize) {
         let rows = BAND_ROWS.min(size.height() - first);
-        let band: Vec<Sight> = (0..rows * width)
+        let band: Vec<Sight> = (first * width..(first + rows) * width)
             .into_par_iter()
-            .map(|i| {
-                let (x, y) = (i % width, first + i / width);
-                let (x_px, y_px) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-                tracer.cast(scene.camera.ray(size, x_px, y_px))
-            })
+            .map(|pixel| sight(&tracer, scene, pixel))
             .collect();
         for (sight, pixel) in band.iter().zip((first * width) as usize..) {
             fill(&mut frame, pixel, sight, scene);
@@ -67,6 +64,45 @@ pub fn render(
     }
     progress.end();
     Ok(frame)
+}
+
+/// Some pixels of the picture of `scene`, by their numbers row by row: a picture of one row, whose
+/// pixels are they, in this order. Reports one unit of progress a pixel.
+///
+/// # Errors
+/// As [`Tracer::new`]; no pixel, or more than a row has.
+pub fn render_pixels(
+    volume: &Volume,
+    scene: &Scene,
+    wanted: Wanted,
+    pixels: &[u32],
+    progress: &dyn Progress,
+) -> Result<Frame> {
+    /// Between two reports.
+    const AT_A_TIME: usize = 256;
+    let tracer = Tracer::new(volume, scene)?;
+    let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted);
+    progress.begin("reference", pixels.len() as u64);
+    for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {
+        let sights: Vec<Sight> = some
+            .par_iter()
+            .map(|&pixel| sight(&tracer, scene, pixel))
+            .collect();
+        for (sight, pixel) in sights.iter().zip(first..) {
+            fill(&mut frame, pixel, sight, scene);
+        }
+        progress.advance(some.len() as u64);
+    }
+    progress.end();
+    Ok(frame)
+}
+
+/// What the ray of a pixel's centre sees, the pixels counted row by row.
+fn sight(tracer: &Tracer, scene: &Scene, pixel: u32) -> Sight {
+    let width = scene.size.width();
+    let (x, y) = (pixel % width, pixel / width);
+    let (x_px, y_px) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+    tracer.cast(scene.camera.ray(scene.size, x_px, y_px))
 }
 
 /// Double precision decides every ray but those whose own cubics touch the iso value to the last bit;

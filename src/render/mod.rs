@@ -25,7 +25,7 @@ mod variant;
 pub use directions::{AngleError, Directions};
 pub use gradient::GradientFigures;
 pub use lanes::Lanes;
-pub use pipeline::{Options, Renderer, Rendering};
+pub use pipeline::{Options, Renderer, Rendering, Sampled};
 pub use ray_caster::{FirstCrossing, RayCaster};
 pub use twins::struct_layouts;
 pub use variant::Variant;

@@ -1,6 +1,10 @@
 //! One frame, from scene to planes: uploads, the picture's own passes, the tone curve, the
 //! read-back.
 
+mod sampled;
+
+pub use sampled::Sampled;
+
 use std::time::Instant;
 
 use crate::error::{Error, Result};

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use angioray::extent::ImageSize;
 use angioray::frame::{Frame, Wanted};
 use angioray::progress::{Progress, Silent};
-use angioray::reference::render;
+use angioray::reference::{render, render_pixels};
 use angioray::scene::{Camera, Lens, Light, Phong, Picture, Reflection, Rgb, Scene, Tone};
 use angioray::volume::{Geometry, Volume};
 use glam::DVec3;
@@ -210,4 +210,21 @@ fn progress_counts_every_row_once() {
     assert_eq!(counter.total.load(Ordering::Relaxed), 40);
     assert_eq!(counter.done.load(Ordering::Relaxed), 40);
     assert_eq!(counter.ended.load(Ordering::Relaxed), 1);
+}
+
+#[test]
+fn some_pixels_are_those_of_the_whole_picture() {
+    let scene = ball_scene(Some(Phong::default()));
+    let all = picture(&scene);
+    // More than are cast at a time, in no order; the first and the last among them.
+    let pixels: Vec<u32> = (0..600).map(|n| 1999 - n * 637 % 2000).collect();
+    let some = render_pixels(&ball(), &scene, Wanted::ALL, &pixels, &Silent).unwrap();
+    assert_eq!(some, all.picked(&pixels).unwrap());
+    // The control: other pixels are other pictures.
+    assert_ne!(
+        some,
+        all.picked(&[&pixels[1..], &pixels[..1]].concat()).unwrap()
+    );
+    let none = render_pixels(&ball(), &scene, Wanted::ALL, &[], &Silent);
+    assert!(none.unwrap_err().to_string().contains("0x1 pixels"));
 }

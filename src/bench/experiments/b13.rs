@@ -15,6 +15,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     takes_volumes: true,
     counts_rays: false,
     times_frames: true,
+    races: false,
     run,
 };
 

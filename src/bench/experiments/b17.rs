@@ -17,6 +17,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     takes_volumes: true,
     counts_rays: false,
     times_frames: false,
+    races: false,
     run,
 };
 

@@ -15,6 +15,7 @@ mod convergence;
 mod gradients;
 mod pareto;
 mod rays;
+mod speed;
 mod tolerance;
 mod traversals;
 mod vessels;
@@ -25,6 +26,7 @@ use super::Experiment;
 pub const EXPERIMENTS: &[Experiment] = &[
     vessels::EXPERIMENT,
     pareto::EXPERIMENT,
+    speed::EXPERIMENT,
     traversals::EXPERIMENT,
     convergence::EXPERIMENT,
     rays::EXPERIMENT,

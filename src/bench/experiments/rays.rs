@@ -13,6 +13,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     takes_volumes: false,
     counts_rays: true,
     times_frames: false,
+    races: false,
     run,
 };
 

@@ -27,6 +27,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     takes_volumes: false,
     counts_rays: false,
     times_frames: false,
+    races: false,
     run,
 };
 

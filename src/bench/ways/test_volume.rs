@@ -17,10 +17,9 @@ pub struct TestVolume<'a> {
 enum Origin<'a> {
     /// By the user.
     Named(&'a Specimen),
-    /// Of so many voxels a side, made when it is first needed.
+    /// Made when it is first needed.
     Phantom {
-        kind: PhantomKind,
-        side: u32,
+        make: Box<dyn Fn() -> Result<Specimen>>,
         made: OnceCell<Box<Specimen>>,
     },
 }
@@ -49,13 +48,25 @@ impl<'a> TestVolume<'a> {
         Self::named_or(bench, vec![Self::phantom(kind, side, 1)])
     }
 
+    /// The user's volumes; without any scans of vessels of these numbers of voxels along each side.
+    pub fn scans(bench: &'a Bench, sides: &[u32]) -> Vec<Self> {
+        let scan = |&side| Self {
+            name: Specimen::scan_name(side),
+            size: 1,
+            origin: Origin::Phantom {
+                make: Box::new(move || Specimen::scan(side)),
+                made: OnceCell::new(),
+            },
+        };
+        Self::named_or(bench, sides.iter().map(scan).collect())
+    }
+
     fn phantom(kind: PhantomKind, side: u32, size: usize) -> Self {
         Self {
             name: format!("{kind} phantom {side}"),
             size,
             origin: Origin::Phantom {
-                kind,
-                side,
+                make: Box::new(move || Specimen::sized(kind, side)),
                 made: OnceCell::new(),
             },
         }
@@ -78,11 +89,11 @@ impl<'a> TestVolume<'a> {
     pub fn specimen(&self) -> Result<&Specimen> {
         match &self.origin {
             Origin::Named(specimen) => Ok(specimen),
-            Origin::Phantom { kind, side, made } => {
+            Origin::Phantom { make, made } => {
                 if let Some(specimen) = made.get() {
                     return Ok(specimen);
                 }
-                let specimen = Specimen::sized(*kind, *side)?;
+                let specimen = make()?;
                 Ok(made.get_or_init(|| Box::new(specimen)))
             }
         }

@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::frame::Frame;
 use crate::reference::display;
-use crate::scene::{Scene, Tone};
+use crate::scene::{Camera, Scene, Tone};
 use crate::volume::Volume;
 
 use process::Process;
@@ -195,6 +195,15 @@ impl Peer {
     /// The peer fails, or has forgotten the scene.
     pub fn time(&mut self, scene: &PeerScene) -> Result<PeerTime> {
         let (time, _) = self.draw(RenderRequest::untold(scene.id))?;
+        Ok(time)
+    }
+
+    /// Draws the picture that another camera sees of the scene, for its time alone.
+    ///
+    /// # Errors
+    /// As [`Self::time`].
+    pub fn time_from(&mut self, scene: &PeerScene, camera: &Camera) -> Result<PeerTime> {
+        let (time, _) = self.draw(RenderRequest::untold_from(scene.id, camera))?;
         Ok(time)
     }
 

@@ -5,7 +5,9 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
-use crate::scene::{Filter, Gradient, Lens, Light, Phong, Picture, Projection, Reflection, Scene};
+use crate::scene::{
+    Camera, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Reflection, Scene,
+};
 use crate::volume::Volume;
 
 use super::process::quotable;
@@ -81,7 +83,7 @@ pub(super) struct SceneRequest {
 }
 
 #[derive(Serialize)]
-struct CameraRequest {
+pub(super) struct CameraRequest {
     eye: [f64; 3],
     right: [f64; 3],
     up: [f64; 3],
@@ -121,13 +123,25 @@ struct PhongRequest {
     shininess: f64,
 }
 
-impl SceneRequest {
-    pub fn of(id: u64, scene: &Scene, volume: &Volume, setting: &str) -> Self {
-        let camera = &scene.camera;
+impl CameraRequest {
+    fn of(camera: &Camera) -> Self {
         let (fov_deg, ortho_height_mm) = match camera.lens() {
             Lens::Perspective { fov_deg } => (Some(fov_deg), None),
             Lens::Orthographic { height_mm } => (None, Some(height_mm)),
         };
+        Self {
+            eye: camera.eye_world().to_array(),
+            right: camera.right().to_array(),
+            up: camera.up().to_array(),
+            forward: camera.forward().to_array(),
+            fov_deg,
+            ortho_height_mm,
+        }
+    }
+}
+
+impl SceneRequest {
+    pub fn of(id: u64, scene: &Scene, volume: &Volume, setting: &str) -> Self {
         let phong = match &scene.picture {
             Picture::Surface { phong, .. } => *phong,
             Picture::Emission(emission) => emission.phong,
@@ -139,14 +153,7 @@ impl SceneRequest {
             setting: setting.to_owned(),
             mode: scene.picture.mode(),
             size: [scene.size.width(), scene.size.height()],
-            camera: CameraRequest {
-                eye: camera.eye_world().to_array(),
-                right: camera.right().to_array(),
-                up: camera.up().to_array(),
-                forward: camera.forward().to_array(),
-                fov_deg,
-                ortho_height_mm,
-            },
+            camera: CameraRequest::of(&scene.camera),
             filter: match scene.sampling.filter {
                 Filter::Nearest => "nearest",
                 Filter::Linear => "linear",
@@ -220,6 +227,9 @@ impl PhongRequest {
 #[derive(Serialize)]
 pub(super) struct RenderRequest {
     pub id: u64,
+    /// In place of the scene's; of pictures that are only timed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraRequest>,
     /// R, G, B, A: linear light, premultiplied, without background.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
@@ -233,8 +243,17 @@ impl RenderRequest {
     pub fn untold(id: u64) -> Self {
         Self {
             id,
+            camera: None,
             color: None,
             depth: None,
+        }
+    }
+
+    /// Without planes, from another place.
+    pub fn untold_from(id: u64, camera: &Camera) -> Self {
+        Self {
+            camera: Some(CameraRequest::of(camera)),
+            ..Self::untold(id)
         }
     }
 }

@@ -1,0 +1,162 @@
+//! The fastest setting of a medium whose picture is right to two steps of eight bits.
+
+use serde::{Deserialize, Serialize};
+
+use super::contender::{Look, scene};
+use super::errors::{Sparse, judged_pixels};
+use crate::bench::{Bench, Effort, Specimen};
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::measure::time;
+use crate::render::Renderer;
+use crate::scene::{Quadrature, Sampling, SamplingMethod, Scene};
+
+/// The largest error that a channel of a pixel may have.
+const BOUND: f64 = 2.0 / 255.0;
+
+/// Rules on panels of fixed steps, each tried at ever smaller ones until it keeps the bound.
+fn rules(effort: Effort) -> &'static [&'static str] {
+    match effort {
+        Effort::Quick => &["simpson"],
+        Effort::Usual | Effort::Full => &["preintegrated", "midpoint", "simpson"],
+    }
+}
+/// Voxels.
+const STEPS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+/// What is taken where none of them does: it has no step.
+const SUREST: &str = "adaptive:0.001";
+
+/// A medium in the setting that was chosen for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Medium {
+    shaded: bool,
+    quadrature: String,
+    /// Without meaning where the rule has none.
+    step_voxels: f64,
+    /// Of the pixels judged when it was chosen.
+    color_max: f64,
+    judged: usize,
+    tried: usize,
+}
+
+impl Medium {
+    pub fn look(&self) -> Look {
+        match self.shaded {
+            true => Look::ShadedMedium,
+            false => Look::Medium,
+        }
+    }
+
+    pub fn setting(&self) -> String {
+        match self.quadrature.as_str() {
+            SUREST => SUREST.to_owned(),
+            rule => format!("{rule}, step {}", self.step_voxels),
+        }
+    }
+
+    pub fn scene(&self, specimen: &Specimen, side_px: u32) -> Result<Scene> {
+        let quadrature: Quadrature = self.quadrature.parse()?;
+        let sampling = Sampling {
+            method: SamplingMethod::Fixed,
+            step_voxels: self.step_voxels,
+            ..Sampling::default()
+        };
+        scene(specimen, self.look(), side_px, sampling, quadrature)
+    }
+
+    /// A sentence for the findings.
+    pub fn told(&self, volume: &str) -> String {
+        let kept = match self.color_max <= BOUND {
+            true => "the fastest of those tried that keep an error of 2 of 255",
+            false => "none of those tried keeps an error of 2 of 255, this one comes nearest",
+        };
+        format!(
+            "{volume}, {}: {} ({:.2} of 255 in {} pixels), {kept} ({} tried)",
+            self.look().name(),
+            self.setting(),
+            255.0 * self.color_max,
+            self.judged,
+            self.tried
+        )
+    }
+}
+
+/// A setting that was tried.
+struct Tried {
+    medium: Medium,
+    /// A frame, where the bound is kept.
+    ms: f64,
+}
+
+/// The media, plain and shaded, in pictures of one size.
+pub fn choose(bench: &Bench, specimen: &Specimen, side_px: u32) -> Result<Vec<Medium>> {
+    let octree = bench.octree(specimen)?;
+    let mut renderer = bench.renderer(specimen, &octree)?;
+    let mut chosen = Vec::new();
+    for shaded in [false, true] {
+        let all = try_all(bench, specimen, shaded, side_px, &mut renderer)?;
+        let tried = all.len();
+        let fastest = all
+            .iter()
+            .filter(|one| one.medium.color_max <= BOUND)
+            .min_by(|a, b| a.ms.total_cmp(&b.ms));
+        let nearest = || {
+            let error = |one: &&Tried| one.medium.color_max;
+            all.iter().min_by(|a, b| error(a).total_cmp(&error(b)))
+        };
+        if let Some(one) = fastest.or_else(nearest) {
+            let mut medium = one.medium.clone();
+            medium.tried = tried;
+            chosen.push(medium);
+        }
+    }
+    Ok(chosen)
+}
+
+fn try_all(
+    bench: &Bench,
+    specimen: &Specimen,
+    shaded: bool,
+    side_px: u32,
+    renderer: &mut Renderer,
+) -> Result<Vec<Tried>> {
+    let of = |rule: &str, step_voxels| Medium {
+        shaded,
+        quadrature: rule.to_owned(),
+        step_voxels,
+        color_max: f64::INFINITY,
+        judged: 0,
+        tried: 0,
+    };
+    let seen = of(SUREST, STEPS[0]).scene(specimen, side_px)?;
+    let truth = Sparse::of(bench, specimen, &seen)?;
+    let mut all = Vec::new();
+    let mut judge = |mut medium: Medium| -> Result<bool> {
+        bench.check_stop()?;
+        let scene = medium.scene(specimen, side_px)?;
+        let rendering = renderer.render(&scene, Wanted::DISPLAY)?;
+        let wrong = truth.wrong(medium.look().mode(), &rendering.frame)?;
+        medium.color_max = wrong.color_max.unwrap_or(f64::INFINITY);
+        medium.judged = judged_pixels(bench.effort).min(scene.size.pixels());
+        let keeps = medium.color_max <= BOUND;
+        let ms = match keeps {
+            true => time(renderer, &scene)?.frame_ms,
+            false => f64::INFINITY,
+        };
+        all.push(Tried { medium, ms });
+        Ok(keeps)
+    };
+    let mut kept = false;
+    for rule in rules(bench.effort) {
+        for step_voxels in STEPS {
+            if judge(of(rule, step_voxels))? {
+                kept = true;
+                break;
+            }
+        }
+    }
+    if !kept {
+        judge(of(SUREST, STEPS[0]))?;
+    }
+    Ok(all)
+}

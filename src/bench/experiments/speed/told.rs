@@ -1,0 +1,80 @@
+//! What the rows show, a sentence each.
+
+use super::errors::judged_pixels;
+use super::race::{Raced, Runner, TURN_DEG};
+use super::row::{beside, cores, renderer};
+use crate::bench::Bench;
+use crate::gpu::DeviceKind;
+use crate::report::figure;
+
+/// Of one picture size: what the device can sample, and the ratios to a peer.
+pub fn race(place: &str, rows: &[Raced]) -> Vec<String> {
+    let mut told = Vec::new();
+    let most = rows.iter().find(|row| row.runner == Runner::Sampling);
+    if let Some(rate) = most.and_then(Raced::samples_per_s) {
+        told.push(format!(
+            "{place}: sampling alone takes {} million samples a second",
+            figure(1e-6 * rate)
+        ));
+    }
+    let ratio = |row: &Raced| {
+        let (rival, ratios) = beside(row, rows)?;
+        let look = row.look?.name();
+        let cpu = ratios.cpu.map(figure).unwrap_or_else(|| "unknown".into());
+        let (wall, setting) = (figure(ratios.wall), &rival.setting);
+        Some(format!(
+            "{look} {}, {cpu} ({wall}) of {setting}",
+            row.setting
+        ))
+    };
+    let ratios: Vec<String> = rows.iter().filter_map(ratio).collect();
+    let peer = rows
+        .iter()
+        .find(|row| matches!(row.runner, Runner::Peer(_)));
+    if let Some(peer) = peer {
+        told.push(format!(
+            "{place}: processor time (wall time) as a multiple of that of {}: {}",
+            renderer(peer),
+            ratios.join("; ")
+        ));
+    }
+    told
+}
+
+/// Of all rows: what was measured, and how.
+pub fn conduct(bench: &Bench) -> Vec<String> {
+    let device = bench.device.info();
+    let mut told = vec![
+        format!(
+            "a frame is from the camera set to pixels that the host can read; all rows of a picture \
+             size take turns, a frame each a round after one round to warm up; between two rounds the \
+             camera turns by {TURN_DEG}°"
+        ),
+        format!(
+            "processor time is that of all threads of this process{}, 'over cores' its median over {} \
+             threads at once",
+            match device.kind {
+                DeviceKind::Cpu => ", the device's among them",
+                _ => ", which the device is no part of",
+            },
+            cores()
+        ),
+        "samples are those of a frame from the middle of the camera's way, of exact ways the cells that \
+         were walked; their rate is over the cast's time alone, and sampling alone follows the same \
+         camera's rays straight through the volume, one sample a voxel"
+            .into(),
+        format!(
+            "errors are against the double-precision reference in {} pixels drawn at random of the \
+             middle frame",
+            judged_pixels(bench.effort)
+        ),
+    ];
+    if bench.peer.is_none() {
+        told.push(
+            "another renderer beside these rows: scripts/peers/setup.sh sets VTK up, and \
+             scripts/peers/speed.sh runs this experiment with it"
+                .into(),
+        );
+    }
+    told
+}

@@ -283,16 +283,22 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
         let transfer = file.transfer_function(volume.range()).unwrap();
         let scene = common::scene(&volume, 8, Picture::Emission(Emission::of(transfer)));
         let rendering = renderer.render(&scene, Wanted::default()).unwrap();
-        assert!(rendering.classify_ms > 0.0);
+        assert_eq!(
+            rendering.classify_ms > 0.0,
+            rendering.uploaded_bytes > 10_000
+        );
         rendering.uploaded_bytes
     };
     let voxels = volume.voxels().bytes().len() as u64;
     let (first, second) = (uploaded("3dra"), uploaded("mra"));
     assert!(first > voxels, "{first}");
-    // A byte a node, and the knots.
-    let nodes = octree.ranges().len() as u64;
+    // A byte a node, a bit a cell, and the knots.
+    let cells: u64 = volume.dims().cells().map(u64::from).iter().product();
+    let least = octree.ranges().len() as u64 + cells / 8;
     assert!(
-        (nodes..nodes + 10_000).contains(&second) && second < voxels / 20,
+        (least..least + 10_000).contains(&second) && second < voxels / 5,
         "{second}"
     );
+    // And nothing again for the same one.
+    assert!(uploaded("mra") < 10_000);
 }

@@ -301,6 +301,22 @@ fn any_work_group_gives_the_same_bytes() {
     }
 }
 
+/// Fixed steps and the exact way of each picture, and the adaptive rule of the unshaded emission.
+fn cast_by_each_method(picture: Picture) -> Vec<(Picture, SamplingMethod)> {
+    let other = match &picture {
+        Picture::Emission(emission) => emission.phong.is_none().then(|| {
+            Picture::Emission(Emission {
+                quadrature: Quadrature::of(QuadratureMethod::Adaptive),
+                ..emission.clone()
+            })
+        }),
+        exact => Some(exact.clone()),
+    };
+    let mut casts = vec![(picture, SamplingMethod::Fixed)];
+    casts.extend(other.map(|picture| (picture, SamplingMethod::Exact)));
+    casts
+}
+
 #[test]
 fn any_number_of_lanes_gives_the_same_bytes() {
     let Some(device) = common::device() else {
@@ -309,20 +325,28 @@ fn any_number_of_lanes_gives_the_same_bytes() {
     let signed = volume_of([23, 18, 31], |x, y, z| (hash(x, y, z) * 6e4 - 3e4) as i16);
     let wide = volume_of([18, 27, 22], |x, y, z| (hash(y, z, x) * 6.5e4) as u16);
     let flat = volume_of([1, 24, 17], |x, y, z| (hash(x, y, z) * 255.0) as u8);
-    // What reads voxels differs with their type, all else is the same for all types.
+    // What reads voxels differs with their type, all else is the same for all types: of tubes alone all
+    // ways to follow rays.
     for (volume, modes) in [
-        (tubes(), &["iso", "mip", "minip", "mean", "lmip"][..]),
+        (tubes(), &["iso", "mip", "minip", "mean", "lmip", "dvr"][..]),
         (mixed(), &["iso"]),
         (signed, &["iso"]),
         (wide, &["mip"]),
         (flat, &["iso", "mip"]),
     ] {
         let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
-        let pictures = pictures(volume.range().max);
-        for picture in pictures
-            .iter()
-            .filter(|picture| modes.contains(&picture.mode()))
-        {
+        let wanted = pictures(volume.range().max)
+            .into_iter()
+            .filter(|picture| modes.contains(&picture.mode()));
+        let all_methods = modes.len() > 2;
+        let casts = wanted.flat_map(|picture| {
+            if all_methods {
+                cast_by_each_method(picture)
+            } else {
+                vec![(picture, SamplingMethod::Exact)]
+            }
+        });
+        for (picture, method) in casts {
             let [one, eight, sixteen] = Lanes::ALL.map(|lanes| {
                 let options = Options {
                     lanes: Some(lanes),
@@ -331,15 +355,16 @@ fn any_number_of_lanes_gives_the_same_bytes() {
                 let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
                 let frames = [Traverse::Hierarchical, Traverse::Distance].map(|traverse| {
                     let mut scene = common::scene(&volume, SIZE_PX, picture.clone());
-                    scene.sampling.method = SamplingMethod::Exact;
+                    scene.sampling.method = method;
                     scene.sampling.traverse = traverse;
                     picture_bits(&renderer.render(&scene, Wanted::ALL).unwrap().frame)
                 });
-                assert!(frames[0] == frames[1], "{} {lanes} lanes", picture.mode());
+                let what = format!("{} {method:?} {lanes} lanes", picture.mode());
+                assert!(frames[0] == frames[1], "{what}");
                 frames
             });
-            assert!(one == eight, "{} 8 lanes", picture.mode());
-            assert!(one == sixteen, "{} 16 lanes", picture.mode());
+            assert!(one == eight, "{} {method:?} 8 lanes", picture.mode());
+            assert!(one == sixteen, "{} {method:?} 16 lanes", picture.mode());
         }
     }
 }

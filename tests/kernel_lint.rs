@@ -285,11 +285,16 @@ fn the_switches_are_read_from_the_kernels() {
     };
     assert_eq!(
         of("pass/cast_surface.cl"),
-        named(&[("COUNTERS", 2), ("LAYERS", 2)])
+        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2)])
     );
     assert_eq!(
         of("pass/cast_maximum.cl"),
-        named(&[("COUNTERS", 2), ("LAYERS", 2), ("PROJECTION", 3)])
+        named(&[
+            ("COUNTERS", 2),
+            ("LANES", 3),
+            ("LAYERS", 2),
+            ("PROJECTION", 3)
+        ])
     );
     assert_eq!(
         of("pass/cast_emission.cl"),
@@ -297,6 +302,7 @@ fn the_switches_are_read_from_the_kernels() {
             ("COUNTERS", 2),
             ("GRADIENT", 4),
             ("HOMOGENEOUS", 2),
+            ("LANES", 3),
             ("QUADRATURE", 6),
             ("SHADED", 2)
         ])
@@ -387,16 +393,12 @@ fn disorder(path: &str, text: &str) -> Option<String> {
     let includes_outside_lib = text
         .lines()
         .filter(|line| line.starts_with("#include"))
-        .any(|line| {
-            !["lib", "old"]
-                .iter()
-                .any(|folder| line.starts_with(&format!("#include \"{folder}/")))
-        });
+        .any(|line| !line.starts_with("#include \"lib/"));
     let problem = if !text.starts_with("// ") {
         "does not begin with a comment that says what it is"
     } else if includes_outside_lib {
         "includes something that is not in lib"
-    } else if path.starts_with("lib/") || path.starts_with("old/") {
+    } else if path.starts_with("lib/") {
         if !kernel_names.is_empty() {
             "is in lib and has a kernel"
         } else if !text.lines().any(|line| line == "#pragma once") {

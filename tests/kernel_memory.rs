@@ -125,7 +125,7 @@ impl Under {
     fn with_broken(mut self, file: &str, line: &str, broken: &str) -> Self {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
         let copy = self.path("kernels");
-        for folder in ["lib", "old", "pass", "test"] {
+        for folder in ["lib", "pass", "test"] {
             std::fs::create_dir_all(copy.join(folder)).unwrap();
             for entry in std::fs::read_dir(source.join(folder)).unwrap() {
                 let entry = entry.unwrap();

@@ -13,14 +13,15 @@
 // for all that lies behind. A ray ends once its transmission falls below least_transmission.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
-// with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
-// node, its CLASS_*. Writes color, premultiplied linear light; with COUNTERS the times the medium was
+// with opacity in w; sums as mean_medium has them), the clip planes (index space), per octree node
+// its CLASS_*, and a bit per cell in which something absorbs. Writes color, premultiplied linear light; with COUNTERS the times the medium was
 // looked at and the nodes tested.
-#include "old/cells.clh"
-#include "old/clip.clh"
-#include "old/gather.clh"
-#include "old/medium.clh"
-#include "old/preintegrated.clh"
+#include "lib/beam.clh"
+#include "lib/clip.clh"
+#include "lib/gather.clh"
+#include "lib/medium.clh"
+#include "lib/plane.clh"
+#include "lib/preintegrated.clh"
 
 #ifndef ADAPTIVE_HALVINGS
 #error "ADAPTIVE_HALVINGS, how often a piece of a cell is halved, is given by the host"
@@ -38,10 +39,9 @@
 // third where the field is taken for linear.
 #define FINER 0.33f
 
-// What a ray looks at in one cell, or in a monotone piece of it.
+// What rays look at.
 typedef struct {
-    const global float *knot_values;
-    const global float4 *knot_colors;
+    Transfer transfer;
     const global float4 *knot_sums;
     VolumeGrid volume;
     EmissionCast cast;
@@ -49,130 +49,266 @@ typedef struct {
     GradientSource gradient;
 #endif
     Shading shading;
-    float3 toward_eye;
-    float3 near, way;  // index space: where the ray enters the cell, and its way through
-    Cubic phi;         // along the way
-    float from, width; // of the piece, shares of the way
-    float length_mm;   // of the piece
+    Floats3 toward_eye;
+} Sight;
+
+// Monotone pieces of rays, each in a cell.
+typedef struct {
+    Floats3 near, way;  // index space: where the ray enters the cell, and its way through
+    Cubic phi;          // along the way
+    Floats from, width; // of the piece, shares of the way
+    Floats length_mm;   // of the piece
 } Piece;
 
 // A point of a piece at u, 0 to 1.
 typedef struct {
-    float value;
-    uint after; // knots at or below the value
+    Floats value;
+    Ints after; // knots at or below the value
     Medium medium;
 } Point;
 
-static inline Medium lit_at(const Piece *piece, float u, Medium medium)
+static inline Medium medium_if(Mask mask, Medium a, Medium b)
+{
+    Medium chosen = {{mask ? a.rgb.x : b.rgb.x, mask ? a.rgb.y : b.rgb.y, mask ? a.rgb.z : b.rgb.z},
+                     mask ? a.absorption : b.absorption};
+    return chosen;
+}
+
+static inline Medium lit_at(const Sight *sight, const Piece *piece, Floats u, Medium medium)
 {
 #if SHADED
-    float3 p = clamp_to_domain(piece->volume, piece->near + (piece->from + piece->width * u) * piece->way);
-    return lit_medium(piece->gradient, piece->volume, piece->shading, piece->toward_eye, p, medium);
+    Floats s = piece->from + piece->width * u;
+    Floats3 p = {piece->near.x + s * piece->way.x, piece->near.y + s * piece->way.y, piece->near.z + s * piece->way.z};
+    return lit_medium(sight->gradient, sight->volume, sight->shading, sight->toward_eye, clamp_to_domain(sight->volume, p), medium);
 #else
     return medium;
 #endif
 }
 
-static inline Point point_at(const Piece *piece, float u)
+static inline Point point_at(const Sight *sight, const Piece *piece, Floats u)
 {
     Point point;
     point.value = cubic_at(piece->phi, piece->from + piece->width * u);
-    point.after = knots_up_to(piece->knot_values, piece->cast.knots, point.value);
-    float4 seen = transfer_between(piece->knot_values, piece->knot_colors, piece->cast.knots, point.after, point.value);
-    point.medium.rgb = seen.xyz;
-    point.medium.absorption = absorption_per_mm(piece->cast, seen.w);
-    point.medium = lit_at(piece, u, point.medium);
+    point.after = knots_up_to(sight->transfer, point.value);
+    Seen seen = transfer_between(sight->transfer, point.after, point.value);
+    Medium medium = {seen.rgb, absorption_per_mm(sight->cast, seen.opacity)};
+    point.medium = lit_at(sight, piece, u, medium);
     return point;
 }
 
 // A panel, and the light that it gives by itself.
 typedef struct {
-    float3 light;
-    float depth, opacity;
+    Floats3 light;
+    Floats depth, opacity;
 } Lit;
 
-static inline Lit lit_of(Panel panel)
+// The panel from u on, `width` wide, in the lanes of `which`.
+static inline Lit panel_of(const Sight *sight, const Piece *piece, const Point *near, const Point *middle, const Point *far, Floats u, Floats width,
+                           Mask which)
 {
+    Floats length_mm = width * piece->length_mm;
+    Panel panel = panel_simpson(near->medium, middle->medium, far->medium, length_mm);
+    Mask meets_knots = which & near->after != far->after;
+    if (ANY(meets_knots)) {
+        Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, near->value, far->value);
+        Panel linear = panel_midpoint(lit_at(sight, piece, u + 0.5f * width, mean), length_mm);
+        panel.rgb.x = meets_knots ? linear.rgb.x : panel.rgb.x;
+        panel.rgb.y = meets_knots ? linear.rgb.y : panel.rgb.y;
+        panel.rgb.z = meets_knots ? linear.rgb.z : panel.rgb.z;
+        panel.depth = meets_knots ? linear.depth : panel.depth;
+    }
     Lit lit;
     lit.depth = panel.depth;
-    lit.opacity = -expm1(-panel.depth);
-    lit.light = panel.rgb * lit.opacity;
+    lit.opacity = kept_back(panel.depth);
+    lit.light = weighted(panel.rgb, lit.opacity);
     return lit;
 }
 
-// The panel from u on, `width` wide.
-static inline Lit panel_of(const Piece *piece, Point near, Point middle, Point far, float u, float width)
+// A panel behind another, as one.
+static inline Lit lit_behind(const Lit *one, const Lit *two)
 {
-    float length_mm = width * piece->length_mm;
-    if (near.after == far.after)
-        return lit_of(panel_simpson(near.medium, middle.medium, far.medium, length_mm));
-    Medium mean = mean_medium(piece->knot_values, piece->knot_colors, piece->knot_sums, piece->cast, near.value, far.value);
-    return lit_of(panel_midpoint(lit_at(piece, u + 0.5f * width, mean), length_mm));
+    Lit both;
+    both.depth = one->depth + two->depth;
+    both.opacity = one->opacity + two->opacity * (1.0f - one->opacity);
+    both.light = sum_of(one->light, weighted(two->light, 1.0f - one->opacity));
+    return both;
 }
 
 // How far apart two results for one panel are: in its light, and in what it lets through.
-static inline float apart(Lit a, Lit b)
+static inline Floats apart(const Lit *a, const Lit *b)
 {
-    float3 light = fabs(a.light - b.light);
-    return fmax(light.x, fmax(light.y, light.z)) + fabs(a.opacity - b.opacity);
+    Floats x = fabs(a->light.x - b->light.x);
+    Floats y = fabs(a->light.y - b->light.y);
+    Floats z = fabs(a->light.z - b->light.z);
+    return most_of(x, most_of(y, z)) + fabs(a->opacity - b->opacity);
 }
 
 // What a panel that meets knots may be off by although its halves agree: a spike that lies in one of
 // them is as deep as the field is slow there, not as it is slow on the whole; and of colours that
 // share a panel the nearer hides the farther, by an eighth of the depth's square at most.
-static inline float unseen(const Piece *piece, Point near, Point far, Lit lit, float u, float width)
+static inline Floats unseen(const Sight *sight, const Piece *piece, const Point *near, const Point *far, const Lit *lit, Floats u, Floats width)
 {
-    if (near.after == far.after)
-        return 0.0f;
-    float a = fabs(cubic_slope(piece->phi, piece->from + piece->width * u));
-    float b = fabs(cubic_slope(piece->phi, piece->from + piece->width * (u + 0.5f * width)));
-    float c = fabs(cubic_slope(piece->phi, piece->from + piece->width * (u + width)));
-    float fastest = fmax(a, fmax(b, c));
-    float slowest = fmin(a, fmin(b, c));
-    float uneven = fastest > 0.0f ? (fastest - slowest) / (fastest + slowest) : 0.0f;
-    return (1.0f - lit.opacity) * lit.depth * uneven
-         + 0.125f * piece->cast.color_spread * fmin(lit.depth * lit.depth, 8.0f * lit.opacity);
+    Floats a = fabs(cubic_slope(piece->phi, piece->from + piece->width * u));
+    Floats b = fabs(cubic_slope(piece->phi, piece->from + piece->width * (u + 0.5f * width)));
+    Floats c = fabs(cubic_slope(piece->phi, piece->from + piece->width * (u + width)));
+    Floats fastest = most_of(a, most_of(b, c));
+    Floats slowest = least_of(a, least_of(b, c));
+    Floats uneven = fastest > 0.0f ? (fastest - slowest) / (fastest + slowest) : FLOATS(0.0f);
+    Floats hidden = (1.0f - lit->opacity) * lit->depth * uneven
+                  + 0.125f * sight->cast.color_spread * least_of(lit->depth * lit->depth, 8.0f * lit->opacity);
+    return near->after == far->after ? FLOATS(0.0f) : hidden;
 }
 
-// Adds a piece. `share_per_mm`: half the bound over the ray's length.
-static inline void gather_piece(Gathered *gathered, const Piece *piece, float share_per_mm, uint *samples)
+// Adds pieces, in the lanes of `which`. `share_per_mm`: half the bound over the ray's length.
+static inline void gather_pieces(const Sight *sight, Gathered *gathered, const Piece *piece, Floats share_per_mm, Mask which, Ints *samples)
 {
-    float u = 0.0f;
-    float width = 1.0f;
-    Point near = point_at(piece, 0.0f);
-    *samples += 1u;
-    for (uint tries = 0u; tries < MOST_TRIES && u < 1.0f && gathered->transmission >= piece->cast.least_transmission; tries++) {
+    Floats u = FLOATS(0.0f);
+    Floats width = FLOATS(1.0f);
+    which = which & gathered->transmission >= sight->cast.least_transmission;
+    if (!ANY(which))
+        return;
+    Point points[5]; // a quarter of the panel apart
+    points[0] = point_at(sight, piece, FLOATS(0.0f));
+    *samples += which ? INTS(1) : INTS(0);
+    for (uint tries = 0u; tries < MOST_TRIES && ANY(which); tries++) {
         // Sums of powers of two, not below the least: exact.
-        width = fmin(width, 1.0f - u);
-        Point middle = point_at(piece, u + 0.5f * width);
-        Point far = point_at(piece, u + width);
-        Point first = point_at(piece, u + 0.25f * width);
-        Point third = point_at(piece, u + 0.75f * width);
-        *samples += 4u;
-        Lit whole = panel_of(piece, near, middle, far, u, width);
-        Lit one = panel_of(piece, near, first, middle, u, 0.5f * width);
-        Lit two = panel_of(piece, middle, third, far, u + 0.5f * width, 0.5f * width);
-        Lit both;
-        both.depth = one.depth + two.depth;
-        both.opacity = one.opacity + two.opacity * (1.0f - one.opacity);
-        both.light = one.light + two.light * (1.0f - one.opacity);
-        float allowed = 0.5f * piece->cast.bound * gathered->transmission * both.opacity
-                      + share_per_mm * width * piece->length_mm;
-        float off = FINER * apart(whole, both) + unseen(piece, near, middle, one, u, 0.5f * width)
-                  + (1.0f - one.opacity) * unseen(piece, middle, far, two, u + 0.5f * width, 0.5f * width);
-        bool agree = gathered->transmission * off <= allowed && both.depth <= DEEP;
-        if (agree || width <= LEAST_WIDTH) {
-            gather_light(gathered, both.light, both.depth);
-            u += width;
-            width *= 2.0f;
-            near = far;
-        } else {
-            width *= 0.5f;
+        width = least_of(width, 1.0f - u);
+        for (uint n = 1u; n < 5u; n++)
+            points[n] = point_at(sight, piece, u + (0.25f * (float)n) * width);
+        *samples += which ? INTS(4) : INTS(0);
+        Lit lits[3]; // the panel and its halves
+        for (uint n = 0u; n < 3u; n++) {
+            uint first = n == 2u ? 2u : 0u;
+            uint apart_by = n == 0u ? 2u : 1u;
+            Floats begin = n == 2u ? u + 0.5f * width : u;
+            Floats wide = n == 0u ? width : 0.5f * width;
+            lits[n] = panel_of(sight, piece, &points[first], &points[first + apart_by], &points[first + 2u * apart_by], begin, wide, which);
+        }
+        Lit both = lit_behind(&lits[1], &lits[2]);
+        Floats allowed = 0.5f * sight->cast.bound * gathered->transmission * both.opacity
+                       + share_per_mm * width * piece->length_mm;
+        Floats off = FINER * apart(&lits[0], &both) + unseen(sight, piece, &points[0], &points[2], &lits[1], u, 0.5f * width)
+                   + (1.0f - lits[1].opacity) * unseen(sight, piece, &points[2], &points[4], &lits[2], u + 0.5f * width, 0.5f * width);
+        Mask agree = gathered->transmission * off <= allowed & both.depth <= DEEP;
+        Mask counts = which & (agree | width <= LEAST_WIDTH);
+        gather_light(gathered, both.light, both.depth, counts);
+        u = counts ? u + width : u;
+        width = counts ? 2.0f * width : 0.5f * width;
+        points[0].value = counts ? points[4].value : points[0].value;
+        points[0].after = counts ? points[4].after : points[0].after;
+        points[0].medium = medium_if(counts, points[4].medium, points[0].medium);
+        which = which & u < 1.0f & gathered->transmission >= sight->cast.least_transmission;
+    }
+}
+
+// Adds the cells in which rays stand, in the lanes of `which`: a monotone piece after the other.
+static inline void gather_cells(const Sight *sight, Gathered *gathered, const CellWalk *walk, const Corners *corners, CellExit exit,
+                                Floats share_per_mm, Mask which, Ints *samples)
+{
+    Moment enters = entry_moment(walk);
+    Moment leaves = exit_moment(walk, exit);
+    Floats length_mm = (leaves.high - enters.high) + (leaves.low - enters.low);
+    Floats3 near = point_in_cell(walk, enters, walk->axis, NO_LANE);
+    Floats3 far = point_in_cell(walk, leaves, exit_axis(walk, exit), ALL_LANES);
+    const float corner = FILTER_LINEAR ? 0.0f : 0.5f; // with the nearest filter cells are the voxels' own boxes
+    Piece piece;
+    piece.way.x = far.x - near.x;
+    piece.way.y = far.y - near.y;
+    piece.way.z = far.z - near.z;
+    piece.phi = cubic_along(corners, near, piece.way);
+    piece.near.x = AS_FLOATS(walk->cell.x) + near.x - corner;
+    piece.near.y = AS_FLOATS(walk->cell.y) + near.y - corner;
+    piece.near.z = AS_FLOATS(walk->cell.z) + near.z - corner;
+    Floats ends[4];
+    ends[0] = FLOATS(0.0f);
+    cubic_turns(piece.phi, &ends[1], &ends[2]);
+    ends[3] = FLOATS(1.0f);
+    which = which & length_mm > 0.0f;
+    for (uint n = 1u; n < 4u; n++) {
+        piece.from = ends[n - 1u];
+        piece.width = ends[n] - ends[n - 1u];
+        piece.length_mm = piece.width * length_mm;
+        gather_pieces(sight, gathered, &piece, share_per_mm, which & piece.width > 0.0f, samples);
+    }
+}
+
+// In the lanes of `alive`.
+static inline void gather_along(const Sight *sight, Gathered *gathered, const global VOXEL *voxels, const global uchar *node_class,
+                                const global uint4 *levels, const global uint *cells, Ray ray, Interval interval, Mask alive,
+                                Ints *samples, Ints *nodes_tested)
+{
+    VolumeGrid volume = sight->volume;
+    EmissionCast cast = sight->cast;
+    Floats share_per_mm = 0.5f * cast.bound / most_of(interval.exit - interval.enter, FLOATS(FLT_MIN));
+    CellWalk walk = cells_start(volume, ray, interval);
+    Walk way = walk_start(volume, cast.traverse);
+    CellBox box;
+    int everything = cast.traverse == TRAVERSE_OFF ? INT_MAX : 0;
+    box.low.x = box.low.y = box.low.z = INTS(0);
+    box.high.x = box.high.y = box.high.z = INTS(everything);
+    Ints3 before = octree_cell(volume, &walk); // in the last node
+    Beam beam;
+    bool together = FILTER_LINEAR && cast.traverse == TRAVERSE_DISTANCE && beam_start(&beam, &walk, levels, volume, alive);
+    Corners corners;
+#pragma unroll
+    for (uint i = 0u; i < 8u; i++)
+        corners.v[i] = FLOATS(0.0f);
+    while (ANY(alive)) {
+        // From node to node, until every ray stands in a cell that must be read.
+        while (together && ANY(alive) && !ANY(alive & box_holds(&box, walk.cell))) {
+            BeamRegion region;
+            if (!beam_next(&beam, voxels, node_class, cells, 0.0f, &region, nodes_tested)) {
+                alive = NO_LANE;
+            } else if (region.class == CLASS_VISIT) {
+                Mask behind = alive & before_region(&beam, region, &walk);
+                alive = alive & !(behind & !leap_to_region(&beam, region, &walk, behind));
+                box = region_box(&beam, region);
+            }
+        }
+        Mask leaping = together ? NO_LANE : alive & !box_holds(&box, walk.cell);
+        while (ANY(leaping)) {
+            Ints3 cell = octree_cell(volume, &walk);
+            walk_on(&way, before, cell, leaping);
+            before.x = leaping ? cell.x : before.x;
+            before.y = leaping ? cell.y : before.y;
+            before.z = leaping ? cell.z : before.z;
+            Ints byte = walk_down(&way, node_class, levels, cell, leaping, nodes_tested);
+            set_box(&box, cell, way.level, reach_of(byte), leaping);
+            box_to_the_end(volume, &box, leaping);
+            leaping = leaping & class_of(byte) == CLASS_BELOW;
+            Mask goes_on = cells_leap(&walk, &box, leaping);
+            alive = alive & !(leaping & !goes_on);
+            leaping = goes_on;
+        }
+        // From cell to cell, until every ray stands in one where something absorbs.
+        Mask reading = alive & box_holds(&box, walk.cell);
+        Mask standing = NO_LANE;
+        while (ANY(reading)) {
+            Corners read = cell_corners(voxels, volume, &walk, 0.0f);
+#pragma unroll
+            for (uint i = 0u; i < 8u; i++)
+                corners.v[i] = reading ? read.v[i] : corners.v[i];
+            Medium mean = mean_medium(sight->transfer, sight->knot_sums, cast, corners_least(&read), corners_most(&read));
+            Mask absorbs = mean.absorption > 0.0f;
+            standing = standing | (reading & absorbs);
+            reading = reading & !absorbs;
+            CellExit exit = cell_exit(&walk, reading);
+            Mask goes_on = reading & !exit.ends;
+            cells_step(&walk, exit, goes_on);
+            alive = alive & !(reading & exit.ends);
+            reading = goes_on & box_holds(&box, walk.cell);
+        }
+        if (ANY(standing)) {
+            CellExit exit = cell_exit(&walk, standing);
+            gather_cells(sight, gathered, &walk, &corners, exit, share_per_mm, standing, samples);
+            Mask goes_on = standing & !exit.ends & gathered->transmission >= cast.least_transmission;
+            cells_step(&walk, exit, goes_on);
+            alive = alive & !(standing & !goes_on);
         }
     }
 }
 
-kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels,
+kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                               const global float *knot_values, const global float4 *knot_colors, const global float4 *knot_sums,
                               const global float4 *clip_planes, uint clip_count,
 #if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
@@ -185,88 +321,41 @@ kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *no
 #endif
 )
 {
-    uint i = get_global_id(0);
-    uint j = get_global_id(1);
-    if (i >= rays.width || j >= rays.height)
-        return;
-    uint pixel = j * rays.width + i;
-
-    Ray ray = pixel_ray(rays, i, j);
+    Pixels pixels = tile_pixels(rays);
+    Ray ray = pixel_ray(rays, pixels);
     Interval interval = volume_interval(volume, ray);
     clip_interval(&interval, clip_planes, clip_count, ray);
+    Mask meets = pixels.inside & interval.enter <= interval.exit;
     Gathered gathered = gather_start();
-    uint sample_count = 0u;
-    uint node_count = 0u;
-
-    if (interval.enter <= interval.exit) {
-        Piece piece;
-        piece.knot_values = knot_values;
-        piece.knot_colors = knot_colors;
-        piece.knot_sums = knot_sums;
-        piece.volume = volume;
-        piece.cast = cast;
+    Ints sample_count = INTS(0);
+    Ints node_count = INTS(0);
+    if (ANY(meets)) {
+        Sight sight;
+        sight.transfer.values = knot_values;
+        sight.transfer.colors = knot_colors;
+        sight.transfer.knots = cast.knots;
+        sight.knot_sums = knot_sums;
+        sight.volume = volume;
+        sight.cast = cast;
 #if SHADED
 #if GRADIENT == GRADIENT_PRECOMPUTED
-        piece.gradient.directions = directions;
-        piece.gradient.grid = direction_grid;
+        sight.gradient.directions = directions;
+        sight.gradient.grid = direction_grid;
 #else
-        piece.gradient.voxels = voxels;
+        sight.gradient.voxels = voxels;
 #endif
 #endif
-        piece.shading = shading;
-        piece.toward_eye = -ray.dir_world;
-        float share_per_mm = 0.5f * cast.bound / fmax(interval.exit - interval.enter, FLT_MIN);
-        CellWalk walk = cells_start(volume, ray, interval);
-        Walk way = walk_start(volume, cast.traverse);
-        CellBox box = {(uint3)(0u), (uint3)(0u)};
-        uint3 before = octree_cell(volume, &walk);
-        bool more = true;
-        while (more && gathered.transmission >= cast.least_transmission) {
-            bool skip = false;
-            if (cast.traverse != TRAVERSE_OFF && !box_holds(box, walk.cell)) {
-                uint3 cell = octree_cell(volume, &walk);
-                walk_on(&way, before, cell);
-                before = cell;
-                uint byte = walk_down(&way, node_class, levels, cell, &node_count);
-                skip = class_of(byte) == CLASS_BELOW;
-                box = box_to_the_end(volume, node_box(cell, way.level, reach_of(byte)));
-            }
-            if (skip) {
-                more = cells_leap(&walk, box);
-                continue;
-            }
-            Corners corners = cell_corners(voxels, volume, &walk, 0.0f);
-            CellExit exit = cell_exit(&walk);
-            float least = corners_least(&corners);
-            float most = corners_most(&corners);
-            float length_mm = (exit.t.x - walk.t.x) + (exit.t.y - walk.t.y);
-            bool absorbs = mean_medium(knot_values, knot_colors, knot_sums, cast, least, most).absorption > 0.0f;
-            if (absorbs && length_mm > 0.0f) {
-                float3 near = point_in_cell(&walk, walk.t, walk.axis, false);
-                float3 far = point_in_cell(&walk, exit.t, exit.axis, true);
-                piece.phi = cubic_along(&corners, near, far - near);
-                piece.near = convert_float3(walk.cell) + near;
-#if !FILTER_LINEAR
-                piece.near -= 0.5f; // cells are the voxels' own boxes
-#endif
-                piece.way = far - near;
-                float ends[4] = {0.0f, 1.0f, 1.0f, 1.0f};
-                uint last = cubic_turns(piece.phi, &ends[1], &ends[2]) + 1u;
-                ends[last] = 1.0f;
-                for (uint n = 1u; n <= last; n++) {
-                    piece.from = ends[n - 1u];
-                    piece.width = ends[n] - ends[n - 1u];
-                    piece.length_mm = piece.width * length_mm;
-                    gather_piece(&gathered, &piece, share_per_mm, &sample_count);
-                }
-            }
-            more = cells_step(&walk, exit);
-        }
+        sight.shading = shading;
+        sight.toward_eye.x = -ray.dir_world.x;
+        sight.toward_eye.y = -ray.dir_world.y;
+        sight.toward_eye.z = -ray.dir_world.z;
+        gather_along(&sight, &gathered, voxels, node_class, levels, cells, ray, interval, meets, &sample_count, &node_count);
     }
 
-    color[pixel] = gathered_color(gathered);
+    Floats4 seen = {gathered.rgb.x, gathered.rgb.y, gathered.rgb.z, kept_back(gathered.depth)};
+    put_fours(color, pixels, seen);
 #if COUNTERS
-    steps[pixel] = sample_count;
-    nodes[pixel] = node_count;
+    SCATTER(pixels.inside, steps, pixels.index, sample_count);
+    SCATTER(pixels.inside, nodes, pixels.index, node_count);
 #endif
 }

@@ -79,6 +79,10 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, traverse);
         layout[n++] = OFFSET(EmissionCast, bound);
         layout[n++] = OFFSET(EmissionCast, color_spread);
+        layout[n++] = OFFSET(EmissionCast, absorbs_from);
+        layout[n++] = OFFSET(EmissionCast, absorbs_to);
+        layout[n++] = OFFSET(EmissionCast, pad_0);
+        layout[n++] = OFFSET(EmissionCast, pad_1);
     }
     {
         Shading value;

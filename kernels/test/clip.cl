@@ -1,7 +1,8 @@
 // Where each ray, its direction per mm, is inside a volume of `sizes` voxels and on the kept side
 // of all of its own clip planes, those from `sizes[i].w` on, `counts[i]` of them: `entry` holds
 // the axis or plane that it enters by and whether it enters by one at all.
-#include "old/clip.clh"
+#define LANES 1
+#include "lib/clip.clh"
 
 kernel void clip(uint count, const global uint4 *sizes, const global float4 *planes, const global uint *counts,
                  const global float4 *origins, const global float4 *dirs,
@@ -15,12 +16,14 @@ kernel void clip(uint count, const global uint4 *sizes, const global float4 *pla
     volume.ny = sizes[i].y;
     volume.nz = sizes[i].z;
     Ray ray;
-    ray.origin = origins[i].xyz;
-    ray.origin_low = (float3)(0.0f);
-    ray.dir = dirs[i].xyz;
-    ray.dir_low = (float3)(0.0f);
+    ray.origin.x = pair_of(origins[i].x, 0.0f);
+    ray.origin.y = pair_of(origins[i].y, 0.0f);
+    ray.origin.z = pair_of(origins[i].z, 0.0f);
+    ray.dir.x = pair_of(dirs[i].x, 0.0f);
+    ray.dir.y = pair_of(dirs[i].y, 0.0f);
+    ray.dir.z = pair_of(dirs[i].z, 0.0f);
     Interval found = volume_interval(volume, ray);
     clip_interval(&found, planes + sizes[i].w, counts[i], ray);
     inside[i] = (float2)(found.enter, found.exit);
-    entry[i] = (uint4)(found.axis, found.by_face, 0u, 0u);
+    entry[i] = (uint4)((uint)found.axis, found.by_face ? 1u : 0u, 0u, 0u);
 }

@@ -1,5 +1,6 @@
 // The field at each point of a volume of `size` voxels, and its slope along each direction.
-#include "old/field.clh"
+#define LANES 1
+#include "lib/field.clh"
 
 kernel void field(uint count, uint4 size, const global VOXEL *voxels, const global float4 *points,
                   const global float4 *dirs, global float *values, global float2 *with_slope)
@@ -11,8 +12,10 @@ kernel void field(uint count, uint4 size, const global VOXEL *voxels, const glob
     volume.nx = size.x;
     volume.ny = size.y;
     volume.nz = size.z;
-    float slope;
-    float value = field_slope_at(voxels, volume, points[i].xyz, dirs[i].xyz, &slope);
-    values[i] = field_at(voxels, volume, points[i].xyz);
+    Floats3 p = {points[i].x, points[i].y, points[i].z};
+    Floats3 dir = {dirs[i].x, dirs[i].y, dirs[i].z};
+    Floats slope;
+    Floats value = field_slope_at(voxels, volume, p, dir, &slope);
+    values[i] = field_at(voxels, volume, p);
     with_slope[i] = (float2)(value, slope);
 }

@@ -1,6 +1,7 @@
 // The field's gradient at each point of a volume of `size` voxels, and the normal made of it by the
 // map of covectors with these rows, which is `fallback` where the gradient vanishes.
-#include "old/gradient.clh"
+#define LANES 1
+#include "lib/gradient.clh"
 
 kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 row_z,
 #if GRADIENT == GRADIENT_PRECOMPUTED
@@ -28,6 +29,10 @@ kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 
 #else
     source.voxels = voxels;
 #endif
-    gradients[i] = (float4)(field_gradient(source, volume, points[i].xyz), 0.0f);
-    normals[i] = (float4)(field_normal(source, volume, points[i].xyz, fallback.xyz), 0.0f);
+    Floats3 p = {points[i].x, points[i].y, points[i].z};
+    Floats3 instead = {fallback.x, fallback.y, fallback.z};
+    Floats3 gradient = field_gradient(source, volume, p);
+    Floats3 normal = field_normal(source, volume, p, instead);
+    gradients[i] = (float4)(gradient.x, gradient.y, gradient.z, 0.0f);
+    normals[i] = (float4)(normal.x, normal.y, normal.z, 0.0f);
 }

@@ -1,5 +1,6 @@
 // The peak between two samples of each ray: rays hold the ends' t, the sign and the goal.
-#include "old/peak.clh"
+#define LANES 1
+#include "lib/peak.clh"
 
 kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 start, float4 dir, float length_mm, uint first,
                  const global float4 *rays, global float4 *peaks, global uint *found)
@@ -12,14 +13,18 @@ kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 star
     volume.ny = size.y;
     volume.nz = size.z;
     Lattice lattice;
-    lattice.start = start.xyz;
-    lattice.dir = dir.xyz;
+    lattice.start.x = start.x;
+    lattice.start.y = start.y;
+    lattice.start.z = start.z;
+    lattice.dir.x = dir.x;
+    lattice.dir.y = dir.y;
+    lattice.dir.z = dir.z;
     lattice.length_mm = length_mm;
     float sign = rays[i].z;
-    RayPoint a = ray_point(voxels, volume, lattice, sign, 0.0f, rays[i].x);
-    RayPoint b = ray_point(voxels, volume, lattice, sign, 0.0f, rays[i].y);
+    RayPoint a = ray_point(voxels, volume, &lattice, sign, 0.0f, rays[i].x);
+    RayPoint b = ray_point(voxels, volume, &lattice, sign, 0.0f, rays[i].y);
     RayPoint best = {0.0f, 0.0f, 0.0f};
-    uint samples = 0u;
-    found[i] = peak_between(voxels, volume, lattice, sign, 0.0f, rays[i].w, first != 0u, a, b, &best, &samples);
+    Ints samples = INTS(0);
+    found[i] = peak_between(voxels, volume, &lattice, sign, 0.0f, rays[i].w, first != 0u, a, b, ALL_LANES, &best, &samples) ? 1u : 0u;
     peaks[i] = (float4)(best.t, best.height, best.slope, (float)samples);
 }

@@ -1,5 +1,6 @@
 // The light that each surface point reflects toward the eye; `toward_light.w` = 1: a headlight.
-#include "old/shade.clh"
+#define LANES 1
+#include "lib/shade.clh"
 
 kernel void reflection(uint count, uint model, float4 numbers, const global float4 *colors, const global float4 *normals,
                        const global float4 *toward_eye, const global float4 *toward_light, global float4 *seen)
@@ -14,5 +15,9 @@ kernel void reflection(uint count, uint model, float4 numbers, const global floa
     shading.specular = numbers.z;
     shading.shininess = numbers.w;
     shading.toward_light = toward_light[i];
-    seen[i] = (float4)(reflect_light(shading, colors[i].xyz, normals[i].xyz, toward_eye[i].xyz), 0.0f);
+    Floats3 color = {colors[i].x, colors[i].y, colors[i].z};
+    Floats3 normal = {normals[i].x, normals[i].y, normals[i].z};
+    Floats3 eye = {toward_eye[i].x, toward_eye[i].y, toward_eye[i].z};
+    Floats3 light = reflect_light(shading, color, normal, eye);
+    seen[i] = (float4)(light.x, light.y, light.z, 0.0f);
 }

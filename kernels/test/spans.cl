@@ -1,7 +1,13 @@
 // The sample lattice of each ray and its spans of one node: per ray, at most `room` each of
 // points, their cells, and spans (first sample, end, whether the cells either side of its beginning
 // touch), and of `lasts`, the cells of the spans' last samples.
-#include "old/octree.clh"
+#define LANES 1
+#include "lib/spans.clh"
+
+static inline uint4 as_numbers(Ints3 cell)
+{
+    return (uint4)((uint)cell.x, (uint)cell.y, (uint)cell.z, 0u);
+}
 
 kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
                   const global float4 *origins, const global float4 *dirs,
@@ -16,29 +22,33 @@ kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
     volume.ny = size.y;
     volume.nz = size.z;
     Ray ray;
-    ray.origin = origins[i].xyz;
-    ray.origin_low = (float3)(0.0f);
-    ray.dir = dirs[i].xyz;
-    ray.dir_low = (float3)(0.0f);
+    ray.origin.x = pair_of(origins[i].x, 0.0f);
+    ray.origin.y = pair_of(origins[i].y, 0.0f);
+    ray.origin.z = pair_of(origins[i].z, 0.0f);
+    ray.dir.x = pair_of(dirs[i].x, 0.0f);
+    ray.dir.y = pair_of(dirs[i].y, 0.0f);
+    ray.dir.z = pair_of(dirs[i].z, 0.0f);
     Interval interval = volume_interval(volume, ray);
     uint samples = 0u;
     uint spans_found = 0u;
     if (interval.enter <= interval.exit) {
         Lattice lattice = ray_lattice(volume, ray, interval, step_mm);
-        samples = lattice.last + 1u;
+        samples = (uint)lattice.last + 1u;
         for (uint k = 0u; k < samples && k < room; k++) {
-            float3 p = lattice_point(volume, lattice, lattice_t(lattice, k));
-            uint3 cell = cell_at(volume, p);
-            points[i * room + k] = (float4)(p, interval.enter + lattice_t(lattice, k));
-            cells[i * room + k] = (uint4)(cell, 0u);
+            Floats t = lattice_t(&lattice, (int)k);
+            Floats3 p = lattice_point(volume, &lattice, t);
+            points[i * room + k] = (float4)(p.x, p.y, p.z, interval.enter + t);
+            cells[i * room + k] = as_numbers(cell_at(volume, p));
         }
-        uint3 last_cell = cell_at(volume, lattice.start);
+        Ints3 last_cell = cell_at(volume, lattice.start);
         for (uint k = 0u; k < samples && spans_found < room;) {
-            uint3 cell = cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k)));
+            Ints3 cell = cell_at(volume, lattice_point(volume, &lattice, lattice_t(&lattice, (int)k)));
             uint touch = leaves_touch(last_cell, cell) ? 1u : 0u;
-            uint end = span_end(volume, lattice, k, cell, node_box(cell, level, 0u), &last_cell);
+            CellBox box;
+            set_box(&box, cell, (int)level, 0, ALL_LANES);
+            uint end = (uint)span_end(volume, &lattice, (int)k, cell, &box, ALL_LANES, &last_cell);
             spans_out[i * room + spans_found] = (uint4)(k, end, touch, 0u);
-            lasts[i * room + spans_found] = (uint4)(last_cell, 0u);
+            lasts[i * room + spans_found] = as_numbers(last_cell);
             spans_found++;
             k = end;
         }

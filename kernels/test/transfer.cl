@@ -1,5 +1,6 @@
 // The transfer function at each value.
-#include "old/transfer.clh"
+#define LANES 1
+#include "lib/transfer.clh"
 
 kernel void transfer(uint count, uint knots, const global float *knot_values, const global float4 *knot_colors,
                      const global float *values, global float4 *colors)
@@ -7,5 +8,7 @@ kernel void transfer(uint count, uint knots, const global float *knot_values, co
     uint i = get_global_id(0);
     if (i >= count || get_global_id(1) != 0)
         return;
-    colors[i] = transfer_at(knot_values, knot_colors, knots, values[i]);
+    Transfer transfer = {knot_values, knot_colors, knots};
+    Seen seen = transfer_at(transfer, values[i]);
+    colors[i] = (float4)(seen.rgb.x, seen.rgb.y, seen.rgb.z, seen.opacity);
 }

@@ -23,33 +23,26 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/color.clh",
     "lib/crossing.clh",
     "lib/cubic.clh",
+    "lib/exponential.clh",
     "lib/field.clh",
+    "lib/gather.clh",
     "lib/gradient.clh",
     "lib/lanes.clh",
+    "lib/lattice.clh",
+    "lib/medium.clh",
     "lib/octree.clh",
     "lib/pair.clh",
+    "lib/peak.clh",
     "lib/plane.clh",
     "lib/power.clh",
+    "lib/preintegrated.clh",
+    "lib/quadrature.clh",
     "lib/ray.clh",
+    "lib/refine.clh",
     "lib/shade.clh",
-    "old/cells.clh",
-    "old/clip.clh",
-    "old/crossing.clh",
-    "old/cubic.clh",
-    "old/field.clh",
-    "old/gather.clh",
-    "old/gradient.clh",
-    "old/lattice.clh",
-    "old/medium.clh",
-    "old/octree.clh",
-    "old/pair.clh",
-    "old/peak.clh",
-    "old/preintegrated.clh",
-    "old/quadrature.clh",
-    "old/ray.clh",
-    "old/refine.clh",
-    "old/shade.clh",
-    "old/transfer.clh",
+    "lib/spans.clh",
+    "lib/stretches.clh",
+    "lib/transfer.clh",
     "pass/adaptive_emission.cl",
     "pass/cast_emission.cl",
     "pass/cast_maximum.cl",
@@ -137,7 +130,7 @@ mod tests {
     #[test]
     fn every_kernel_file_is_embedded() {
         let mut on_disk = Vec::new();
-        for folder in ["lib", "old", "pass", "test"] {
+        for folder in ["lib", "pass", "test"] {
             let path = Path::new(env!("CARGO_MANIFEST_DIR"))
                 .join("kernels")
                 .join(folder);

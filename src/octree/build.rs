@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn leaf_8_takes_at_most_5_percent_of_8_bit_voxels() {
         let dims = Dims::new([512, 512, 512]).unwrap();
-        let nodes: usize = levels(dims, Leaf::default())
+        let nodes: usize = levels(dims, Leaf::new(8).unwrap())
             .unwrap()
             .iter()
             .map(Level::nodes)
@@ -287,6 +287,6 @@ mod tests {
         for edge in ["3", "33", "0", "-8", "eight", ""] {
             assert!(edge.parse::<Leaf>().is_err(), "{edge}");
         }
-        assert_eq!("8".parse::<Leaf>().unwrap(), Leaf::default());
+        assert_eq!("4".parse::<Leaf>().unwrap(), Leaf::default());
     }
 }

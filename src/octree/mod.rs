@@ -12,7 +12,8 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// The edge of a finest node in cells: 4 to 32, 8 unless chosen (level 3 of Lesar et al. 2015).
+/// The edge of a finest node in cells: 4 to 32, 4 unless chosen: beams of rays skip more than with the 8 of
+/// Lesar et al. 2015 (level 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Leaf(u32);
 
@@ -41,7 +42,7 @@ impl Leaf {
 
 impl Default for Leaf {
     fn default() -> Self {
-        Self(8)
+        Self(4)
     }
 }
 

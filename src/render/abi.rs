@@ -112,6 +112,11 @@ twin! {
         bound: f32,
         /// The most by which the knots' colours differ in a channel.
         color_spread: f32,
+        /// Stored units; outside nothing absorbs.
+        absorbs_from: f32,
+        absorbs_to: f32,
+        pad_0: u32,
+        pad_1: u32,
     }
 }
 

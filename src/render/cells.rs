@@ -1,4 +1,4 @@
-//! Which cells a surface may cross: a bit each, once per iso value.
+//! Which cells a ray must look at: a bit each, once per iso value or transfer function.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,16 +9,39 @@ use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
 use super::classify::Class;
+use super::medium::Knots;
+use super::ranges::ValueRanges;
 
-/// A bit per cell, x fastest, the lowest bit of a word first: whether its corners lie on both sides of
-/// `iso` (stored units), or so near to it that `iso_error` leaves their side uncertain. Only leaves of
-/// [`Class::Visit`] hold such cells; `classes` are those of the octree's nodes.
+/// The cells whose corners lie on both sides of `iso` (stored units), or so near to it that `iso_error`
+/// leaves their side uncertain. `classes` are those of the octree's nodes.
 pub fn crossed(
     volume: &Volume,
     octree: &Octree,
     classes: &[u8],
     iso: f32,
     iso_error: f32,
+) -> Vec<u32> {
+    visited(volume, octree, classes, |range| {
+        may_cross(range, iso, iso_error)
+    })
+}
+
+/// The cells in which some value absorbs light. `classes` are those of the octree's nodes.
+pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots) -> Vec<u32> {
+    let ranges = ValueRanges::new(knots);
+    let [from, to] = knots.absorbing();
+    visited(volume, octree, classes, |[least, most]| {
+        most >= from && least <= to && !ranges.is_transparent(least, most)
+    })
+}
+
+/// A bit per cell, x fastest, the lowest bit of a word first: whether the range of its corners matters.
+/// Only leaves of [`Class::Visit`] hold such cells.
+fn visited(
+    volume: &Volume,
+    octree: &Octree,
+    classes: &[u8],
+    matters: impl Fn([f32; 2]) -> bool + Sync,
 ) -> Vec<u32> {
     let cells = volume.dims().cells().map(|n| n as usize);
     let count: usize = cells.iter().product();
@@ -27,7 +50,7 @@ pub fn crossed(
     let leaves = octree.levels()[0];
     let [leaves_x, leaves_y, _] = leaves.size.map(|n| n as usize);
     with_voxels!(volume.voxels(), voxels => {
-        (0..leaves.nodes()).into_par_iter().for_each(|node| {
+        (0..leaves.nodes()).into_par_iter().for_each_init(Vec::new, |lines, node| {
             if classes[node] != Class::Visit as u8 {
                 return;
             }
@@ -36,12 +59,19 @@ pub fn crossed(
                 node / leaves_x % leaves_y * leaf,
                 node / (leaves_x * leaves_y) * leaf,
             ];
-            let [x, y, z] = [0, 1, 2].map(|axis| first[axis]..(first[axis] + leaf).min(cells[axis]));
-            for z in z {
-                for y in y.clone() {
-                    for x in x.clone() {
-                        let range = range_of(voxels, volume, [x, y, z]);
-                        if may_cross(range, iso, iso_error) {
+            let end = [0, 1, 2].map(|axis| (first[axis] + leaf).min(cells[axis]));
+            ranges_along_x(voxels, volume, first, end, lines);
+            let [width, height] = [end[0] - first[0], end[1] - first[1] + 1];
+            for z in first[2]..end[2] {
+                for y in first[1]..end[1] {
+                    let line = (z - first[2]) * height + (y - first[1]);
+                    let around = [line, line + 1, line + height, line + height + 1];
+                    let around = around.map(|line| &lines[line * width..(line + 1) * width]);
+                    for x in first[0]..end[0] {
+                        let [a, b, c, d] = around.map(|line| line[x - first[0]]);
+                        let range = join(join(a, b), join(c, d)).map(Into::<f64>::into);
+                        let [least, most] = range;
+                        if matters([least as f32, most as f32]) {
                             let cell = (z * cells[1] + y) * cells[0] + x;
                             words[cell / 32].fetch_or(1 << (cell % 32), Ordering::Relaxed);
                         }
@@ -53,20 +83,34 @@ pub fn crossed(
     words.into_iter().map(AtomicU32::into_inner).collect()
 }
 
-/// The least and the greatest voxel at a cell's corners.
-fn range_of<T: Voxel>(voxels: &[T], volume: &Volume, [x, y, z]: [usize; 3]) -> [f32; 2] {
+/// The least and the greatest of each two voxels side by side along x, for the lines of voxels that the
+/// cells from `first` to `end` touch, y fastest. An axis with one voxel has no second.
+fn ranges_along_x<T: Voxel>(
+    voxels: &[T],
+    volume: &Volume,
+    first: [usize; 3],
+    end: [usize; 3],
+    lines: &mut Vec<[T; 2]>,
+) {
     let [nx, ny, nz] = volume.dims().array().map(|n| n as usize);
-    let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
-    for z in z..(z + 2).min(nz) {
-        for y in y..(y + 2).min(ny) {
-            for x in x..(x + 2).min(nx) {
-                let value: f64 = voxels[(z * ny + y) * nx + x].into();
-                least = least.min(value as f32);
-                most = most.max(value as f32);
-            }
+    let beyond = usize::from(nx > 1);
+    lines.clear();
+    for z in first[2]..=end[2] {
+        for y in first[1]..=end[1] {
+            let line = (z.min(nz - 1) * ny + y.min(ny - 1)) * nx;
+            lines.extend((first[0]..end[0]).map(|x| {
+                let (a, b) = (voxels[line + x], voxels[line + x + beyond]);
+                join([a; 2], [b; 2])
+            }));
         }
     }
-    [least, most]
+}
+
+fn join<T: Voxel>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [
+        if b[0] < a[0] { b[0] } else { a[0] },
+        if b[1] > a[1] { b[1] } else { a[1] },
+    ]
 }
 
 /// As the kernels tell a cell's side: heights are single-precision differences.
@@ -74,4 +118,100 @@ fn may_cross([least, most]: [f32; 2], iso: f32, iso_error: f32) -> bool {
     let above = least - iso >= iso_error;
     let below = most - iso < -iso_error;
     !(above || below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::Dims;
+    use crate::octree::Leaf;
+    use crate::progress::Silent;
+    use crate::render::classify;
+    use crate::volume::{Geometry, NonFinite, Rescale, Voxels};
+
+    /// Every voxel its own hash, all low but for one in 50.
+    fn volume(dims: [u64; 3]) -> Volume {
+        let dims = Dims::new(dims).unwrap();
+        let hash = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+        let voxels: Vec<i16> = (0..dims.voxels())
+            .map(|i| (hash(i) % 90) as i16 - if hash(i + 7) % 50 == 0 { 0 } else { 100 })
+            .collect();
+        let (geometry, rescale) = (Geometry::default(), Rescale::IDENTITY);
+        Volume::new(
+            dims,
+            Voxels::from(voxels),
+            geometry,
+            rescale,
+            NonFinite::Refuse,
+        )
+        .unwrap()
+    }
+
+    /// How many cells' bits differ from `matters`, asked with all values at a cell's corners.
+    fn differing(volume: &Volume, bits: &[u32], matters: impl Fn(&[f64]) -> bool) -> usize {
+        let [nx, ny, nz] = volume.dims().array().map(|n| n as usize);
+        let [cx, cy, cz] = volume.dims().cells().map(|n| n as usize);
+        assert_eq!(bits.len(), (cx * cy * cz).div_ceil(32));
+        let differs = |cell: usize| {
+            let (x, y, z) = (cell % cx, cell / cx % cy, cell / (cx * cy));
+            let corners: Vec<f64> = (0..8)
+                .map(|c| [x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)])
+                .map(|[x, y, z]| {
+                    let (x, y, z) = (x.min(nx - 1), y.min(ny - 1), z.min(nz - 1));
+                    volume.voxels().stored((z * ny + y) * nx + x)
+                })
+                .collect();
+            (bits[cell / 32] >> (cell % 32) & 1 == 1) != matters(&corners)
+        };
+        (0..cx * cy * cz).filter(|&cell| differs(cell)).count()
+    }
+
+    const SIZES: [[u64; 3]; 5] = [[9, 10, 11], [33, 5, 17], [1, 20, 9], [13, 1, 1], [2, 2, 2]];
+
+    #[test]
+    fn crossed_cells_are_those_with_corners_on_both_sides() {
+        for dims in SIZES {
+            let volume = volume(dims);
+            for edge in [4, 5, 8] {
+                let octree = Octree::build(&volume, Leaf::new(edge).unwrap(), &Silent).unwrap();
+                let classes = classify::by_iso(&octree, 0.5, 0.0);
+                let bits = crossed(&volume, &octree, &classes, 0.5, 0.0);
+                let crosses = |iso: f64| {
+                    move |v: &[f64]| v.iter().any(|&v| v >= iso) && v.iter().any(|&v| v < iso)
+                };
+                assert_eq!(
+                    differing(&volume, &bits, crosses(0.5)),
+                    0,
+                    "{dims:?} {edge}"
+                );
+                // The control: another iso value's.
+                let others = differing(&volume, &bits, crosses(-50.5));
+                assert!(others > 0 || dims == [2, 2, 2], "{dims:?} {edge}");
+            }
+        }
+    }
+
+    #[test]
+    fn absorbing_cells_are_those_with_a_value_that_absorbs() {
+        let knots = Knots {
+            values: vec![-60.0, -40.0, -20.0, 10.0, 30.0],
+            colors: [0.0, 0.2, 0.0, 0.0, 0.5].map(|a| [1.0, 1.0, 1.0, a]).into(),
+        };
+        // Of all values between a cell's least and greatest.
+        let absorbs = |v: &[f64]| {
+            let least = v.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = v.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            most > -60.0 && least < -20.0 || most > 10.0
+        };
+        for dims in SIZES {
+            let volume = volume(dims);
+            let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
+            let classes = classify::by_opacity(&octree, &knots, true, None);
+            let bits = absorbing(&volume, &octree, &classes, &knots);
+            assert_eq!(differing(&volume, &bits, absorbs), 0, "{dims:?}");
+            let above = |v: &[f64]| v.iter().any(|&v| v > 10.0);
+            let others = differing(&volume, &bits, above);
+            assert!(others > 0 || dims == [2, 2, 2], "{dims:?}");
+        }
+    }
 }

@@ -5,8 +5,6 @@ use crate::gpu::Buffer;
 use crate::scene::{Emission, Phong, QuadratureMethod, Rgb, TransferFunction};
 
 use super::abi::EmissionCast;
-use super::classify;
-use super::homogeneity::Limit;
 use super::medium::Knots;
 use super::passes::{DeviceTransfer, Run, adaptive_emission, cast_emission};
 use super::picture::View;
@@ -28,11 +26,6 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         ));
     }
     let knots = Knots::of(transfer, view.volume);
-    let skip = view.scene.sampling.skip;
-    let node_class = view.upload_classes(run, || {
-        let limit = homogeneity.map(|homogeneity| Limit::new(homogeneity, transfer, view.volume));
-        classify::by_opacity(view.octree, &knots, skip, limit)
-    })?;
     let on_device = match quadrature.method {
         QuadratureMethod::Preintegrated => transfer_on_device(run, &knots.smooth(), true)?,
         QuadratureMethod::Adaptive => transfer_on_device(run, &knots, true)?,
@@ -58,7 +51,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             shaded_by,
             view.uploaded,
             view.clip,
-            &node_class,
+            view.classified,
             averages.as_ref(),
             &on_device,
             &view.rays,
@@ -73,7 +66,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             shaded_by,
             view.uploaded,
             view.clip,
-            &node_class,
+            view.classified,
             &on_device,
             &view.rays,
             &cast,
@@ -92,7 +85,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         kind: None,
         certificate: None,
         counters,
-        other_bytes: node_class.bytes() + on_device.bytes() + averages_bytes,
+        other_bytes: on_device.bytes() + averages_bytes,
     })
 }
 
@@ -104,6 +97,7 @@ fn transfer_on_device(run: &Run, knots: &Knots, with_sums: bool) -> Result<Devic
         sums: Buffer::upload(run.device, "transfer function's sums", &sums)?,
         knots: knots.values.len() as u32,
         color_spread: knots.color_spread(),
+        absorbing: knots.absorbing(),
     })
 }
 
@@ -138,6 +132,10 @@ fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -
         },
         bound: ((1.0 - ENDED_EARLY) * bound) as f32,
         color_spread: on_device.color_spread,
+        absorbs_from: on_device.absorbing[0],
+        absorbs_to: on_device.absorbing[1],
+        pad_0: 0,
+        pad_1: 0,
     }
 }
 

@@ -21,7 +21,7 @@ use super::medium::unit_absorption;
 use super::ranges::ValueRanges;
 
 /// `--homogeneity` for one volume and transfer function.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Limit {
     /// Of the bounds above: E/2, and L in unit lengths.
     Optical { half: f64, longest: f64 },

@@ -6,6 +6,7 @@ use crate::volume::Volume;
 use super::twins::stored;
 
 /// Knots, ascending in value.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Knots {
     /// Stored units.
     pub values: Vec<f32>,
@@ -62,6 +63,24 @@ impl Knots {
             smooth.colors.push(self.colors[k]);
         }
         smooth
+    }
+
+    /// The values (stored units) outside of which the opacity vanishes; from +∞ to −∞ where it does
+    /// everywhere.
+    pub fn absorbing(&self) -> [f32; 2] {
+        let absorbs = |color: &[f32; 4]| color[3] > 0.0;
+        let (Some(first), Some(last)) = (
+            self.colors.iter().position(absorbs),
+            self.colors.iter().rposition(absorbs),
+        ) else {
+            return [f32::INFINITY, f32::NEG_INFINITY];
+        };
+        let before = first.checked_sub(1).map(|k| self.values[k]);
+        let after = self.values.get(last + 1).copied();
+        [
+            before.unwrap_or(f32::NEG_INFINITY),
+            after.unwrap_or(f32::INFINITY),
+        ]
     }
 
     /// The most by which the knots' colours differ in a channel.
@@ -193,6 +212,19 @@ mod tests {
             // Not at the jump; single precision has two digits left of the least.
             assert!(ratio < 1.6 || pair[1][3] == 0.2, "{pair:?}");
         }
+    }
+
+    #[test]
+    fn nothing_absorbs_outside_the_absorbing_values() {
+        let everywhere = [f32::NEG_INFINITY, f32::INFINITY];
+        assert_eq!(knots(&HARD).absorbing(), [0.0, f32::INFINITY]);
+        assert_eq!(knots(&HARD[..6]).absorbing(), [0.0, 21.0]);
+        assert_eq!(knots(&HARD[1..4]).absorbing(), everywhere);
+        assert_eq!(knots(&HARD[3..5]).absorbing(), [f32::NEG_INFINITY, 21.0]);
+        assert_eq!(
+            knots(&[(1.0, 0.0), (2.0, 0.0)]).absorbing(),
+            [f32::INFINITY, f32::NEG_INFINITY]
+        );
     }
 
     fn pair_of(at: impl Fn(usize) -> f64) -> [f64; 2] {

@@ -2,6 +2,7 @@
 
 mod abi;
 mod cells;
+mod classified;
 mod classify;
 mod clip;
 mod directions;

@@ -1,17 +1,13 @@
 //! The passes of each kind of picture: straight-line code, the order of lines is the schedule.
 
-use std::time::Instant;
-
 use crate::error::Result;
 use crate::frame::Wanted;
-use crate::gpu::Buffer;
 use crate::octree::Octree;
-use crate::scene::{Phong, Projection, Refine, Rgb, SamplingMethod, Scene, Traverse, Window};
+use crate::scene::{Phong, Projection, Refine, Rgb, SamplingMethod, Scene, Window};
 use crate::volume::Volume;
 
 use super::abi::{ProjectionCast, RayGrid, SurfaceCast};
-use super::cells;
-use super::classify;
+use super::classified::{Classified, floor, sign};
 use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
 use super::passes::{
@@ -19,8 +15,7 @@ use super::passes::{
     surface_normal, window_value,
 };
 use super::planes::Planes;
-use super::reach::add_reach;
-use super::twins::{self, stored};
+use super::twins::{self, stored, stored_with_error};
 use super::variant::{ProjectionLoop, refine_number, traverse_number};
 
 /// What is looked at, and what is wanted of it.
@@ -30,6 +25,7 @@ pub struct View<'a> {
     pub volume: &'a Volume,
     pub octree: &'a Octree,
     pub uploaded: &'a DeviceVolume,
+    pub classified: &'a Classified,
     pub clip: &'a DeviceClip,
     pub gradient: DeviceGradient<'a>,
     pub rays: RayGrid,
@@ -42,38 +38,6 @@ impl View<'_> {
 
     pub fn traverse(&self) -> u32 {
         traverse_number(&self.scene.sampling)
-    }
-
-    /// The classes on the device, with their reach where that is how space is skipped.
-    pub fn upload_classes(
-        &self,
-        run: &mut Run,
-        classify: impl FnOnce() -> Vec<u8>,
-    ) -> Result<Buffer<u8>> {
-        let start = Instant::now();
-        let mut classes = classify();
-        if self.scene.sampling.traverse == Traverse::Distance {
-            add_reach(self.octree, &mut classes);
-        }
-        run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
-        Buffer::upload(run.device, "octree's classes", &classes)
-    }
-
-    /// What of sign · Φ a projection need not find, in stored units: what is not above the volume's
-    /// own end, unless it may be a local maximum that counts; or, where only the picture is wanted,
-    /// what the window shows as it shows its own end.
-    fn floor(&self, of: Projection, window: Window) -> f32 {
-        let rescale = self.volume.rescale();
-        let [min, max] = self.octree.ranges()[self.octree.ranges().len() - 1];
-        let picture_alone = !(self.wanted.value || self.wanted.depth);
-        match of {
-            Projection::Maximum if picture_alone => min.max(stored(rescale, window.low())),
-            Projection::Minimum if picture_alone => -max.min(stored(rescale, window.high())),
-            Projection::Maximum => min,
-            Projection::Minimum => -max,
-            Projection::LocalMaximum { threshold } if stored(rescale, threshold) > min => min,
-            Projection::LocalMaximum { .. } | Projection::Mean => f32::NEG_INFINITY,
-        }
     }
 }
 
@@ -88,15 +52,7 @@ pub fn surface(
     phong: Option<Phong>,
 ) -> Result<Planes> {
     let wanted = view.wanted;
-    let asked = view.volume.rescale().stored(iso);
-    let iso = stored(view.volume.rescale(), iso);
-    let iso_error = (asked - f64::from(iso)).abs() as f32;
-    let node_class = view.upload_classes(run, || classify::by_iso(view.octree, iso, iso_error))?;
-    let start = Instant::now();
-    let classes = classify::by_iso(view.octree, iso, iso_error);
-    let cells = cells::crossed(view.volume, view.octree, &classes, iso, iso_error);
-    let cells = Buffer::upload(run.device, "crossed cells", &cells)?;
-    run.classify_ms += start.elapsed().as_secs_f64() * 1e3;
+    let (iso, iso_error) = stored_with_error(view.volume.rescale(), iso);
     let cast = SurfaceCast {
         iso,
         step_mm: view.step_mm(),
@@ -122,7 +78,7 @@ pub fn surface(
             run,
             view.uploaded,
             view.clip,
-            &node_class,
+            view.classified,
             &view.rays,
             &cast,
             &mut hit_mm,
@@ -134,8 +90,7 @@ pub fn surface(
             run,
             view.uploaded,
             view.clip,
-            &node_class,
-            &cells,
+            view.classified,
             &view.rays,
             &cast,
             &mut hit_mm,
@@ -178,35 +133,31 @@ pub fn surface(
         kind: Some(kind),
         certificate,
         counters,
-        other_bytes: hit_mm.bytes() + node_class.bytes(),
+        other_bytes: hit_mm.bytes(),
     })
 }
 
 /// `mip`, `minip`, `mean`, `lmip`: cast, then the window.
 pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) -> Result<Planes> {
     let wanted = view.wanted;
-    let (which, sign, threshold) = match of {
-        Projection::Maximum => (ProjectionLoop::Extremum, 1.0, 0.0),
-        Projection::Minimum => (ProjectionLoop::Extremum, -1.0, 0.0),
-        Projection::Mean => (ProjectionLoop::Mean, 1.0, 0.0),
+    let (which, threshold) = match of {
+        Projection::Maximum | Projection::Minimum => (ProjectionLoop::Extremum, 0.0),
+        Projection::Mean => (ProjectionLoop::Mean, 0.0),
         Projection::LocalMaximum { threshold } => (
             ProjectionLoop::Local,
-            1.0,
             stored(view.volume.rescale(), threshold),
         ),
     };
-    let floor = view.floor(of, window);
     let cast = ProjectionCast {
         step_mm: view.step_mm(),
-        sign,
+        sign: sign(of),
         threshold,
         traverse: view.traverse(),
         probe: u32::from(view.scene.sampling.probe),
-        floor,
+        floor: floor(of, window, wanted, view.volume, view.octree),
         pad_0: 0,
         pad_1: 0,
     };
-    let node_class = view.upload_classes(run, || classify::by_floor(view.octree, sign, floor))?;
     let mut kind = run.plane("kind plane")?;
     let mut value = run.plane("value plane")?;
     let mut depth = wanted.depth.then(|| run.plane("depth plane")).transpose()?;
@@ -220,7 +171,7 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         which,
         view.uploaded,
         view.clip,
-        &node_class,
+        view.classified,
         &view.rays,
         &cast,
         &mut kind,
@@ -245,6 +196,6 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
         kind: Some(kind),
         certificate: None,
         counters,
-        other_bytes: node_class.bytes(),
+        other_bytes: 0,
     })
 }

@@ -14,6 +14,7 @@ use crate::octree::Octree;
 use crate::scene::{Picture, Sampling, Scene};
 use crate::volume::Volume;
 
+use super::classified::{Classified, Criterion};
 use super::clip::DeviceClip;
 use super::emission::emission;
 use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
@@ -42,6 +43,8 @@ pub struct Renderer<'a> {
     uploaded: DeviceVolume,
     /// Those of the last picture that needed some.
     directions: Option<DeviceDirections>,
+    /// For the last picture.
+    classified: Option<Classified>,
     built: Built,
     work_group: Option<[usize; 2]>,
     lanes: Lanes,
@@ -59,7 +62,7 @@ pub struct Rendering {
     pub build_ms: f64,
     /// Uploading the volume: with its first frame, then 0.
     pub upload_ms: f64,
-    /// Telling from the octree's ranges what can be left out.
+    /// Telling from ranges of values what can be left out; 0 where the last frame's holds.
     pub classify_ms: f64,
     /// From host to device, for this frame; with the volume's first frame the volume too.
     pub uploaded_bytes: u64,
@@ -105,6 +108,7 @@ impl<'a> Renderer<'a> {
             octree,
             uploaded,
             directions: None,
+            classified: None,
             built: Built::default(),
             work_group: options.work_group,
             lanes: options.lanes.unwrap_or_else(|| Lanes::of(device.info())),
@@ -147,6 +151,21 @@ impl<'a> Renderer<'a> {
         let directions = directions.filter(|_| gradient::needed(scene, wanted).is_some());
         let held_bytes = self.uploaded.bytes() + directions_bytes;
         check_room(self.device, scene.size, wanted, held_bytes)?;
+        let start = Instant::now();
+        let criterion = Criterion::of(scene, wanted, self.volume, self.octree);
+        let known = self.classified.take();
+        let known = known.filter(|known| known.serves(scene, &criterion));
+        let is_new = known.is_none();
+        let classified = match known {
+            Some(known) => known,
+            None => Classified::upload(self.device, self.volume, self.octree, scene, criterion)?,
+        };
+        let classify_ms = if is_new {
+            start.elapsed().as_secs_f64() * 1e3
+        } else {
+            0.0
+        };
+        let classified = &*self.classified.insert(classified);
         let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
         let mut run = Run {
@@ -156,7 +175,6 @@ impl<'a> Renderer<'a> {
             size: scene.size,
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling, self.lanes),
-            classify_ms: 0.0,
         };
         let world_from_index = self.volume.geometry().world_from_index();
         let clip = DeviceClip::upload(self.device, &scene.clip_planes, world_from_index)?;
@@ -166,6 +184,7 @@ impl<'a> Renderer<'a> {
             volume: self.volume,
             octree: self.octree,
             uploaded: &self.uploaded,
+            classified,
             clip: &clip,
             gradient: DeviceGradient::of(scene.gradient, directions),
             rays: ray_grid(&scene.camera, scene.size, self.volume),
@@ -194,7 +213,6 @@ impl<'a> Renderer<'a> {
             )?;
             planes.display = Some(display);
         }
-        let classify_ms = run.classify_ms;
         let (passes, render_ms) = timings.finish(self.device)?;
         let finished = Instant::now();
         let frame = planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?;
@@ -209,7 +227,7 @@ impl<'a> Renderer<'a> {
                 + (self.device.uploaded_bytes() - uploaded_before),
             render_ms,
             gradients: directions.map(|directions| directions.figures),
-            device_bytes: held_bytes + clip.planes.bytes() + planes.bytes(),
+            device_bytes: held_bytes + classified.bytes() + clip.planes.bytes() + planes.bytes(),
         })
     }
 }

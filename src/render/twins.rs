@@ -37,6 +37,13 @@ pub fn stored(rescale: Rescale, physical: f64) -> f32 {
     rescale.stored(physical).clamp(-most, most) as f32
 }
 
+/// The same, and how far it is from the value asked for.
+pub fn stored_with_error(rescale: Rescale, physical: f64) -> (f32, f32) {
+    let nearest = stored(rescale, physical);
+    let error = (rescale.stored(physical) - f64::from(nearest)).abs() as f32;
+    (nearest, error)
+}
+
 pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {
     let numbers = phong.unwrap_or_default();
     let toward_light = match light {

@@ -82,16 +82,16 @@ fn constant_medium(seen: &Seen) -> Vec<String> {
 }
 
 /// Opacities taken for those of another length.
-const OTHER_LENGTH: Mutant = kernel("old/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
+const OTHER_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
 
 #[test]
 fn homogeneous() {
     // The last panel of a ray, which is shorter, taken for a whole one.
     let whole_panels = kernel(
-        "old/lattice.clh",
+        "lib/lattice.clh",
         &[(
-            "return t < lattice.length_mm ? t : lattice.length_mm;",
-            "return t;",
+            "return least_of(lattice->length_mm, AS_FLOATS(k) * lattice->step_mm);",
+            "return AS_FLOATS(k) * lattice->step_mm;",
         )],
     );
     judge(
@@ -109,10 +109,10 @@ fn slab() {
     }
     // The nearer point's opacity between two points.
     let not_between = kernel(
-        "old/transfer.clh",
+        "lib/transfer.clh",
         &[(
-            "return a + (knot_colors[after] - a) * f;",
-            "return f < 0.5f ? a : knot_colors[after];",
+            "    Seen seen;\n",
+            "    f = f < 0.5f ? FLOATS(0.0f) : FLOATS(1.0f);\n    Seen seen;\n",
         )],
     );
     judge("emission::slab", "slab", truth, &[not_between]);
@@ -124,13 +124,7 @@ fn ramp() {
         along_x(seen, 64.0 * rising(0.95) / 40.0)
     }
     // Opacity for absorption: right for the faintest alone.
-    let faint_alone = kernel(
-        "old/transfer.clh",
-        &[(
-            "float absorption = -log1p(-opacity);",
-            "float absorption = opacity;",
-        )],
-    );
+    let faint_alone = kernel("lib/transfer.clh", &[("depth_of_opacity(clear)", "clear")]);
     judge("emission::ramp", "ramp", truth, &[faint_alone]);
 }
 
@@ -138,8 +132,12 @@ fn ramp() {
 fn gaussian() {
     // What lies behind is not hidden.
     let not_hidden = kernel(
-        "old/gather.clh",
-        &[("light * gathered->transmission;", "light;")],
+        "lib/gather.clh",
+        &[
+            ("light.x * gathered->transmission", "light.x"),
+            ("light.y * gathered->transmission", "light.y"),
+            ("light.z * gathered->transmission", "light.z"),
+        ],
     );
     judge(
         "emission::gaussian",
@@ -157,15 +155,15 @@ fn tf_spike() {
     // Whole intervals between the values of two samples left out; panels judged by their points
     // alone, whatever lies between.
     let left_out = kernel(
-        "old/preintegrated.clh",
-        &[("(below + whole + above)", "(below + above)")],
+        "lib/preintegrated.clh",
+        &[(
+            "mean_sum(mean_sum(below, whole), above)",
+            "mean_sum(below, above)",
+        )],
     );
     let points_alone = kernel(
         "pass/adaptive_emission.cl",
-        &[(
-            "    if (near.after == far.after)\n        return lit_of(",
-            "    if (near.after < INT_MAX)\n        return lit_of(",
-        )],
+        &[("which & near->after != far->after", "NO_LANE")],
     );
     judge(
         "emission::tf_spike",
@@ -233,10 +231,10 @@ fn opaque_step() {
     }
     // Infinite absorption.
     let infinite = kernel(
-        "old/transfer.clh",
+        "lib/transfer.clh",
         &[(
-            "return absorption < cast.most_absorption ? absorption : cast.most_absorption;",
-            "return absorption;",
+            "return opacity > 0.0f ? absorption",
+            "return opacity == 1.0f ? FLOATS(INFINITY) : opacity > 0.0f ? absorption",
         )],
     );
     judge("emission::opaque_step", "opaque-step", truth, &[infinite]);
@@ -255,8 +253,11 @@ fn faint_4096() {
     }
     // Opacities without log1p.
     let lost_digits = kernel(
-        "old/transfer.clh",
-        &[("-log1p(-opacity)", "-log(1.0f - opacity)")],
+        "lib/transfer.clh",
+        &[(
+            "depth_of_opacity(clear)",
+            "depth_of_opacity(1.0f - (1.0f - clear))",
+        )],
     );
     judge("emission::faint_4096", "faint-4096", truth, &[lost_digits]);
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::classified::Classified;
 
 use super::{
     Counters, DeviceClip, DeviceGradient, DeviceTransfer, DeviceVolume, Run, levels, switch, voxels,
@@ -16,7 +17,7 @@ pub fn adaptive_emission(
     shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
+    classified: &Classified,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
     cast: &EmissionCast,
@@ -29,6 +30,7 @@ pub fn adaptive_emission(
     let gradient = shaded_by.unwrap_or(DeviceGradient::none());
     let defines = gradient
         .define(variant.defines())
+        .with("LANES", variant.lanes)
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
     let pass = run
@@ -38,6 +40,7 @@ pub fn adaptive_emission(
                 voxels(variant),
                 input::<u8>("node_class"),
                 levels(),
+                input::<u32>("cells"),
                 input::<f32>("knot_values"),
                 input::<[f32; 4]>("knot_colors"),
                 input::<[f32; 4]>("knot_sums"),
@@ -58,8 +61,9 @@ pub fn adaptive_emission(
     let launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
+        .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors)
         .input(&transfer.sums)

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
+use crate::render::classified::Classified;
 use crate::render::variant::quadrature_constant;
 use crate::scene::QuadratureMethod;
 
@@ -18,6 +19,8 @@ pub struct DeviceTransfer {
     pub knots: u32,
     /// The most by which the knots' colours differ in a channel.
     pub color_spread: f32,
+    /// Stored units; outside nothing absorbs.
+    pub absorbing: [f32; 2],
 }
 
 impl DeviceTransfer {
@@ -36,7 +39,7 @@ pub fn cast_emission(
     shaded_by: Option<DeviceGradient>,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
+    classified: &Classified,
     node_average: Option<&Buffer<f32>>,
     transfer: &DeviceTransfer,
     rays: &RayGrid,
@@ -51,7 +54,8 @@ pub fn cast_emission(
     let gradient = shaded_by.unwrap_or(DeviceGradient::none());
     let defines = gradient
         .define(variant.defines())
-        .with("QUADRATURE", format!("{}u", quadrature_constant(method)))
+        .with("LANES", variant.lanes)
+        .with("QUADRATURE", quadrature_constant(method))
         .with("HOMOGENEOUS", switch(node_average.is_some()))
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
@@ -60,6 +64,7 @@ pub fn cast_emission(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             input::<f32>("knot_values"),
             input::<[f32; 4]>("knot_colors"),
         ];
@@ -83,8 +88,9 @@ pub fn cast_emission(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
+        .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors);
     if integrates {

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{ProjectionCast, RayGrid, VolumeGrid};
+use crate::render::classified::Classified;
 use crate::render::variant::ProjectionLoop;
 
 use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
@@ -15,7 +16,7 @@ pub fn cast_maximum(
     which: ProjectionLoop,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
+    classified: &Classified,
     rays: &RayGrid,
     cast: &ProjectionCast,
     kind: &mut Buffer<u32>,
@@ -27,7 +28,8 @@ pub fn cast_maximum(
     let variant = run.variant;
     let defines = variant
         .defines()
-        .with("PROJECTION", format!("{}u", which as u32))
+        .with("LANES", variant.lanes)
+        .with("PROJECTION", which as u32)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_maximum", defines, || {
@@ -53,7 +55,7 @@ pub fn cast_maximum(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.node_range)
         .input(&volume.levels)
         .input(&clip.planes)

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
+use crate::render::classified::Classified;
 
 use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
 
@@ -15,7 +16,7 @@ pub fn cast_surface(
     run: &mut Run,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
+    classified: &Classified,
     rays: &RayGrid,
     cast: &SurfaceCast,
     hit_mm: &mut Buffer<f32>,
@@ -27,6 +28,7 @@ pub fn cast_surface(
     let variant = run.variant;
     let defines = variant
         .defines()
+        .with("LANES", variant.lanes)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
     let pass = run.built.pass(run.device, "cast_surface", defines, || {
@@ -34,6 +36,7 @@ pub fn cast_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
+            input::<u32>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),
@@ -51,8 +54,9 @@ pub fn cast_surface(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
+        .input(&classified.cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

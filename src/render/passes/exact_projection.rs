@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{ProjectionCast, RayGrid, VolumeGrid};
+use crate::render::classified::Classified;
 use crate::render::variant::ProjectionLoop;
 
 use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
@@ -15,7 +16,7 @@ pub fn exact_projection(
     which: ProjectionLoop,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
+    classified: &Classified,
     rays: &RayGrid,
     cast: &ProjectionCast,
     kind: &mut Buffer<u32>,
@@ -56,7 +57,7 @@ pub fn exact_projection(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.node_range)
         .input(&volume.levels)
         .input(&clip.planes)

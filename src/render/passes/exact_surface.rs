@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::gpu::{Buffer, input, output, value};
 use crate::render::abi::{RayGrid, SurfaceCast, VolumeGrid};
+use crate::render::classified::Classified;
 
 use super::cast_surface::Layers;
 use super::{Counters, DeviceClip, DeviceVolume, Run, levels, switch, voxels};
@@ -14,8 +15,7 @@ pub fn exact_surface(
     run: &mut Run,
     volume: &DeviceVolume,
     clip: &DeviceClip,
-    node_class: &Buffer<u8>,
-    cells: &Buffer<u32>,
+    classified: &Classified,
     rays: &RayGrid,
     cast: &SurfaceCast,
     hit_mm: &mut Buffer<f32>,
@@ -59,9 +59,9 @@ pub fn exact_surface(
     let mut launch = pass
         .launch(run.device)
         .input(&volume.voxels)
-        .input(node_class)
+        .input(&classified.node_class)
         .input(&volume.levels)
-        .input(cells)
+        .input(&classified.cells)
         .input(&clip.planes)
         .value(&clip.count)
         .value(&volume.grid)

@@ -83,8 +83,6 @@ pub struct Run<'a> {
     /// Work-items along x and y of a group; `None`: small square tiles of pixels.
     pub work_group: Option<[usize; 2]>,
     pub variant: Variant,
-    /// Time spent classifying the octree's nodes.
-    pub classify_ms: f64,
 }
 
 impl Run<'_> {

@@ -45,7 +45,6 @@ impl Renderer<'_> {
             size: scene.size,
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling, self.lanes),
-            classify_ms: 0.0,
         };
         let rays = ray_grid(&scene.camera, scene.size, self.volume);
         let step_mm = twins::step_mm(&scene.sampling, self.volume) as f32;

@@ -22,10 +22,8 @@ pub fn race(place: &str, rows: &[Raced]) -> Vec<String> {
         let look = row.look?.name();
         let cpu = ratios.cpu.map(figure).unwrap_or_else(|| "unknown".into());
         let (wall, setting) = (figure(ratios.wall), &rival.setting);
-        Some(format!(
-            "{look} {}, {cpu} ({wall}) of {setting}",
-            row.setting
-        ))
+        let own = &row.setting;
+        Some(format!("{cpu} ({wall}) {look} by {own} beside {setting}"))
     };
     let ratios: Vec<String> = rows.iter().filter_map(ratio).collect();
     let peer = rows

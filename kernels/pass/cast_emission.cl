@@ -12,14 +12,12 @@
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
 // node, its CLASS_* and average. Writes color, premultiplied linear light; with COUNTERS the samples
 // taken and the nodes tested.
-#include "lib/beam.clh"
 #include "lib/clip.clh"
 #include "lib/gather.clh"
-#include "lib/lattice.clh"
 #include "lib/medium.clh"
 #include "lib/plane.clh"
 #include "lib/preintegrated.clh"
-#include "lib/spans.clh"
+#include "lib/stretches.clh"
 
 // What rays look at.
 typedef struct {
@@ -61,6 +59,7 @@ static inline Medium medium_at(const Sight *sight, Floats t)
 typedef Floats Node; // Phi
 #define NODE_SAMPLES 1
 #define NODE_AT phi_at
+#define NODE_UNKNOWN FLOATS(0.0f)
 
 static inline Node node_if(Mask mask, Node a, Node b) { return mask ? a : b; }
 
@@ -79,6 +78,7 @@ static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, No
 #elif QUADRATURE == QUADRATURE_RIEMANN
 typedef Floats Node; // samples are not shared
 #define NODE_SAMPLES 1
+#define NODE_UNKNOWN FLOATS(0.0f)
 
 static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
@@ -87,6 +87,7 @@ static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, No
 #elif QUADRATURE == QUADRATURE_MIDPOINT
 typedef Floats Node; // samples are not shared
 #define NODE_SAMPLES 1
+#define NODE_UNKNOWN FLOATS(0.0f)
 
 static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
@@ -96,6 +97,7 @@ static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, No
 #else
 typedef Medium Node;
 #define NODE_AT medium_at
+#define NODE_UNKNOWN clear_medium()
 
 static inline Node node_if(Mask mask, Node a, Node b)
 {
@@ -128,125 +130,99 @@ static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, No
 }
 #endif
 
-// Gathers panels `k` up to `last`, in the lanes of `which`; `k` is then the next. Panel k lies between
-// samples k - 1 and k.
-static inline void gather_panels(const Sight *sight, Gathered *gathered, Ints *k, Ints last, Mask which, Ints *samples)
+// Gathers the next panel, in the lanes of `which`: panel k lies between samples k - 1 and k, of which the
+// first may be known from the panel before.
+static inline void gather_panel(const Sight *sight, Gathered *gathered, Stretch *stretch, Node *near, Mask which, Ints *samples)
 {
-    Mask active = which & *k <= last & gathered->transmission >= sight->cast.least_transmission;
+    Floats t_near = lattice_t(&sight->lattice, stretch->k - 1);
+    Floats t_far = lattice_t(&sight->lattice, stretch->k);
 #ifdef NODE_AT
-    if (!ANY(active))
-        return;
-    Node near = NODE_AT(sight, lattice_t(&sight->lattice, *k - 1));
-    *samples += active ? INTS(1) : INTS(0);
-#else
-    Node near = FLOATS(0.0f);
-#endif
-    while (ANY(active)) {
-        Panel panel = panel_at(sight, lattice_t(&sight->lattice, *k - 1), lattice_t(&sight->lattice, *k), &near);
-        gather(gathered, panel, active);
-        *samples += active ? INTS(NODE_SAMPLES) : INTS(0);
-        *k = active ? *k + 1 : *k;
-        active = active & *k <= last & gathered->transmission >= sight->cast.least_transmission;
+    Mask missing = which & !stretch->known;
+    if (ANY(missing)) {
+        *near = node_if(missing, NODE_AT(sight, t_near), *near);
+        *samples += missing ? INTS(1) : INTS(0);
     }
+    Node far = *near;
+    gather(gathered, panel_at(sight, t_near, t_far, &far), which);
+    *near = node_if(which, far, *near);
+    stretch->known = stretch->known | which;
+#else
+    gather(gathered, panel_at(sight, t_near, t_far, near), which);
+#endif
+    *samples += which ? INTS(NODE_SAMPLES) : INTS(0);
+    stretch->k += which ? INTS(1) : INTS(0);
 }
 
-// Past a region of a beam, the panels that may reach into it: those before and after it add nothing.
-static inline void gather_region(const Sight *sight, Gathered *gathered, const Beam *beam, BeamRegion region, const CellWalk *walk, Ints *k,
-                                 Mask which, Ints *samples)
-{
-    AxisWalk d = beam->axis == 0 ? walk->x : beam->axis == 1 ? walk->y : walk->z;
-    float low = (float)region.low - BEAM_MARGIN;
-    float high = (float)region.high + BEAM_MARGIN;
-    Floats enter = ((beam->forward ? low : high) - d.start.high) * d.mm_per_cell;
-    Floats leave = ((beam->forward ? high : low) - d.start.high) * d.mm_per_cell;
-    float step_mm = sight->lattice.step_mm;
-    Floats most = AS_FLOATS(sight->lattice.last);
-    // Panels that end after it is entered, and begin before it is left.
-    Ints first = AS_INTS(within(enter / step_mm, FLOATS(1.0f), most));
-    Ints last = AS_INTS(within(leave / step_mm + 1.0f, FLOATS(0.0f), most));
-    which = which & leave >= 0.0f & *k <= last;
-    *k = which & first > *k ? first : *k;
-    gather_panels(sight, gathered, k, last, which, samples);
-}
-
-static inline Ints3 cells_if(Mask mask, Ints3 a, Ints3 b)
-{
-    Ints3 chosen = {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
-    return chosen;
-}
-
-// Each ray by itself from node to node.
-static inline void gather_spans(const Sight *sight, Gathered *gathered, const global uchar *node_class,
+// Gathers along rays until each has come to its end, in the lanes of `alive`.
+static inline void gather_along(const Sight *sight, Gathered *gathered, const global uchar *node_class,
 #if HOMOGENEOUS
                                 const global float *node_average,
 #endif
-                                const global uint4 *levels, Mask alive, Ints *samples, Ints *nodes)
+                                const global uint4 *levels, const global uint *cells, Ray ray, Interval interval, Mask alive,
+                                Ints *samples, Ints *nodes_tested)
 {
     const Lattice *lattice = &sight->lattice;
     VolumeGrid volume = sight->volume;
-    Walk way = walk_start(volume, sight->cast.traverse);
-    CellBox box;
-    box.low.x = box.low.y = box.low.z = box.high.x = box.high.y = box.high.z = INTS(0);
-    Ints3 cell = cell_at(volume, lattice->start);
-    Ints3 span_cell = cell; // of the span's last sample
-    Ints3 last_cell = cell; // of the sample before the span
-    Ints class = INTS(CLASS_VISIT);
-    Ints class_before = INTS(CLASS_VISIT);
-#ifdef NODE_AT
-    Node near = NODE_AT(sight, FLOATS(0.0f)); // sample k - 1, where it is known
-    Mask have_near = NO_LANE;
-#else
-    Node near = FLOATS(0.0f);
-#endif
-    Ints end = INTS(0); // of the span
-    Ints k = INTS(0);
-    for (;;) {
-        alive = alive & k <= lattice->last & gathered->transmission >= sight->cast.least_transmission;
-        if (!ANY(alive))
-            return;
-        Mask arrives = alive & k == end;
-        if (ANY(arrives)) {
-            class_before = arrives ? class : class_before;
-            cell = cells_if(arrives, cell_at(volume, lattice_point(volume, lattice, lattice_t(lattice, k))), cell);
-            last_cell = cells_if(arrives, span_cell, last_cell);
-            walk_on(&way, last_cell, cell, arrives);
-            Ints byte = walk_down(&way, node_class, levels, cell, arrives, nodes);
-            class = arrives ? class_of(byte) : class;
-            set_box(&box, cell, way.level, reach_of(byte), arrives);
-            Ints3 far;
-            Ints next_end = span_end(volume, lattice, k, cell, &box, arrives, &far);
-            end = arrives ? next_end : end;
-            span_cell = cells_if(arrives, far, span_cell);
-        }
-        // A panel is left out where it lies in transparent nodes wholly.
-        Mask matters = alive & k > 0 & !(class == CLASS_BELOW & class_before == CLASS_BELOW & leaves_touch(last_cell, cell));
-        Ints next = class == CLASS_VISIT ? k + 1 : end;
-        if (ANY(matters)) {
-            Floats t_near = lattice_t(lattice, k - 1);
-#ifdef NODE_AT
-            Mask look = matters & !have_near;
-            if (ANY(look)) {
-                Node found = NODE_AT(sight, t_near);
-                near = node_if(look, found, near);
-                *samples += look ? INTS(1) : INTS(0);
-            }
-#endif
-            gather(gathered, panel_at(sight, t_near, lattice_t(lattice, k), &near), matters);
-            *samples += matters ? INTS(NODE_SAMPLES) : INTS(0);
-        }
+    uint traverse = sight->cast.traverse;
+    Stretch stretch = stretch_up_to(traverse == TRAVERSE_OFF ? lattice->last : INTS(0));
+    stretch.k = INTS(1);
+    Spans spans = spans_start(volume, lattice, traverse);
 #if HOMOGENEOUS
-        Mask same = alive & class == CLASS_HOMOGENEOUS & gathered->transmission >= sight->cast.least_transmission;
-        if (ANY(same)) {
-            Walk leaves = walk_start(volume, TRAVERSE_UNIFORM);
-            Floats average = GATHER(Floats, node_average, AS_UINTS(node_index(levels, cell, &leaves)));
-            Medium all = medium_of(sight->transfer, sight->cast, average);
-            gather(gathered, panel_midpoint(all, lattice_t(lattice, end - 1) - lattice_t(lattice, k)), same);
+    Ints begin = INTS(0); // of the present span
+#endif
+    Node near = NODE_UNKNOWN;
+    bool together = false;
+    Beam beam;
+    CellWalk walk;
+#if FILTER_LINEAR && !HOMOGENEOUS
+    if (traverse == TRAVERSE_DISTANCE) {
+        walk = cells_start(volume, ray, interval);
+        together = beam_start(&beam, &walk, levels, volume, alive);
+    }
+#endif
+    for (;;) {
+        alive = alive & gathered->transmission >= sight->cast.least_transmission;
+        if (together) {
+            while (ANY(alive) && !ANY(alive & stretch.k <= stretch.last)) {
+                BeamRegion region;
+                if (!beam_next(&beam, sight->voxels, node_class, cells, 0.0f, &region, nodes_tested))
+                    alive = NO_LANE;
+                else if (region.class == CLASS_VISIT)
+                    stretch_into(&stretch, lattice, &beam, region, &walk, alive);
+            }
+        } else if (traverse != TRAVERSE_OFF) {
+            Mask arrives = alive & stretch.k > stretch.last;
+            while (ANY(arrives)) {
+#if HOMOGENEOUS
+                Mask same = arrives & spans.class == CLASS_HOMOGENEOUS;
+                if (ANY(same)) {
+                    Walk leaves = walk_start(volume, TRAVERSE_UNIFORM);
+                    Floats average = GATHER(Floats, node_average, AS_UINTS(node_index(levels, spans.cell, &leaves)));
+                    Medium all = medium_of(sight->transfer, sight->cast, average);
+                    gather(gathered, panel_midpoint(all, lattice_t(lattice, spans.end - 1) - lattice_t(lattice, begin)), same);
+                    alive = alive & gathered->transmission >= sight->cast.least_transmission;
+                    arrives = arrives & alive;
+                }
+                begin = arrives ? spans.end : begin;
+#endif
+                Mask goes_on = spans_leave(&spans, volume, lattice, arrives);
+                alive = alive & !(arrives & !goes_on);
+                Ints byte = walk_down(&spans.way, node_class, levels, spans.cell, goes_on, nodes_tested);
+                CellBox box;
+                box.low = box.high = spans.cell;
+                set_box(&box, spans.cell, spans.way.level, reach_of(byte), goes_on);
+                spans_enter(&spans, &stretch, volume, lattice, class_of(byte), &box, goes_on);
+                stretch.k = stretch.k > 0 ? stretch.k : INTS(1); // no panel ends at the first sample
+                arrives = goes_on & stretch.k > stretch.last;
+            }
         }
-#endif
-#ifdef NODE_AT
-        have_near = matters & next == k + 1;
-#endif
-        k = alive ? next : k;
+        Mask looking = alive & stretch.k <= stretch.last;
+        if (!ANY(looking))
+            return;
+        do {
+            gather_panel(sight, gathered, &stretch, &near, looking, samples);
+            looking = looking & stretch.k <= stretch.last & gathered->transmission >= sight->cast.least_transmission;
+        } while (together && ANY(looking));
     }
 }
 
@@ -301,31 +277,11 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
         sight.toward_eye.x = -ray.dir_world.x;
         sight.toward_eye.y = -ray.dir_world.y;
         sight.toward_eye.z = -ray.dir_world.z;
-        Ints k = INTS(1);
-        Beam beam;
-        CellWalk walk;
-        bool together = false;
-#if FILTER_LINEAR && !HOMOGENEOUS
-        if (cast.traverse == TRAVERSE_DISTANCE) {
-            walk = cells_start(volume, ray, interval);
-            together = beam_start(&beam, &walk, levels, volume, alive);
-        }
-#endif
-        if (together) {
-            BeamRegion region;
-            while (ANY(alive & gathered.transmission >= cast.least_transmission) && beam_next(&beam, voxels, node_class, cells, 0.0f, &region, &node_count)) {
-                if (region.class == CLASS_VISIT)
-                    gather_region(&sight, &gathered, &beam, region, &walk, &k, alive, &sample_count);
-            }
-        } else if (cast.traverse == TRAVERSE_OFF) {
-            gather_panels(&sight, &gathered, &k, sight.lattice.last, alive, &sample_count);
-        } else {
 #if HOMOGENEOUS
-            gather_spans(&sight, &gathered, node_class, node_average, levels, alive, &sample_count, &node_count);
+        gather_along(&sight, &gathered, node_class, node_average, levels, cells, ray, interval, alive, &sample_count, &node_count);
 #else
-            gather_spans(&sight, &gathered, node_class, levels, alive, &sample_count, &node_count);
+        gather_along(&sight, &gathered, node_class, levels, cells, ray, interval, alive, &sample_count, &node_count);
 #endif
-        }
     }
 
     Floats4 seen = {gathered.rgb.x, gathered.rgb.y, gathered.rgb.z, kept_back(gathered.depth)};

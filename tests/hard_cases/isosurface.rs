@@ -1,5 +1,6 @@
 //! Isosurfaces: cases 7 to 15.
 
+use angioray::octree::Leaf;
 use angioray::scene::{SamplingMethod, Scene};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
@@ -80,8 +81,8 @@ const NO_ROOT: Mutant = kernel(
 const LOWEST_RAY: Mutant = kernel(
     "lib/beam.clh",
     &[(
-        "*last = l < cells ? l : cells - 1;",
-        "*last = l < *first ? l : *first;",
+        "{cells.x, cells.y, cells.z, cells.w}",
+        "{cells.x, cells.x, cells.z, cells.z}",
     )],
 );
 
@@ -329,16 +330,17 @@ fn step_edge() {
     judge("isosurface::step_edge", "step-edge", truth, &[NO_ROOT]);
 }
 
-/// The volume as nodes see it that forget their border voxels: each node of 8 cells has the range of
-/// its own 8 voxels an axis. A voxel on a node's border is moved into the node's inside.
+/// The volume as nodes see it that forget their border voxels: each leaf has the range of the voxels that
+/// its cells begin at. A voxel on a node's border is moved into the node's inside.
 fn without_border(volume: &Volume) -> Volume {
     let [nx, ny, nz] = volume.dims().usize();
     let Voxels::U8(voxels) = volume.voxels() else {
         panic!("made for u8");
     };
     let mut moved = vec![0u8; voxels.len()];
+    let edge = Leaf::default().edge() as usize;
     let inward = |c: usize, n: usize| {
-        if c.is_multiple_of(8) && c + 1 < n {
+        if c.is_multiple_of(edge) && c + 1 < n {
             c + 1
         } else {
             c

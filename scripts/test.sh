@@ -4,8 +4,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh test
-# A cache of built kernels per checkout: runs of other versions cannot disturb it.
+# Caches of built kernels per checkout: runs of other versions cannot disturb them.
 export POCL_CACHE_DIR="${POCL_CACHE_DIR:-$PWD/target/pocl-cache}"
+export ANGIORAY_KERNEL_CACHE="${ANGIORAY_KERNEL_CACHE:-$PWD/target/kernel-cache}"
 mkdir -p "$POCL_CACHE_DIR"
 # Here tests that need OpenCL or a browser must not skip, where setup.sh can bring a browser.
 chromium=1

@@ -13,6 +13,7 @@ pub mod extent;
 pub mod frame;
 pub mod gpu;
 pub mod hardcases;
+pub mod kept;
 pub mod measure;
 pub mod octree;
 pub mod output;

@@ -102,6 +102,8 @@ impl Under {
             .env("OCL_ICD_VENDORS", self.path("vendors"))
             .env_remove("OCL_ICD_FILENAMES")
             .env("OCLGRIND_LOG", log)
+            // It tells of lines of the source.
+            .env("ANGIORAY_KERNEL_CACHE", "off")
             .env("OCLGRIND_DATA_RACES", "1")
             .env("OCLGRIND_CHECK_API", "1")
             // Optimised code of inlined structs holds an intrinsic that oclgrind 21.10 does not know.

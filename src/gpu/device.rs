@@ -11,6 +11,7 @@ use ocl::core::{
 
 use crate::error::{Error, Result};
 
+use super::binary::Binaries;
 use super::{device_error, loader};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +56,7 @@ pub struct Device {
     device_id: DeviceId,
     context: Context,
     queue: CommandQueue,
+    binaries: Binaries,
     uploaded_bytes: AtomicU64,
 }
 
@@ -118,6 +120,7 @@ impl Device {
             device_id,
             context,
             queue,
+            binaries: Binaries::open()?,
             uploaded_bytes: AtomicU64::new(0),
         })
     }
@@ -146,6 +149,10 @@ impl Device {
 
     pub(super) fn queue(&self) -> &CommandQueue {
         &self.queue
+    }
+
+    pub(super) fn binaries(&self) -> &Binaries {
+        &self.binaries
     }
 
     /// Waits until all that was launched is done.

@@ -1,5 +1,6 @@
 //! The OpenCL device, memory, kernel sources, programs, typed passes and timings. Knows no volumes.
 
+mod binary;
 mod device;
 mod element;
 pub mod loader;

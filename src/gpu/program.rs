@@ -2,11 +2,11 @@
 
 use std::ffi::CString;
 
-use ocl::core::{self, Kernel, ProgramBuildInfo};
+use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 
 use crate::error::{Error, Result};
 
-use super::{Device, device_error, source};
+use super::{Device, binary, device_error, source};
 
 /// The constants of a built program, `-D NAME=VALUE`, in the order given. Two equal lists are the
 /// same program.
@@ -35,17 +35,25 @@ impl Defines {
     }
 }
 
-/// Builds `kernels/<path>` and takes its kernel `name`.
+/// Builds `kernels/<path>`, or takes it from where built programs are kept, and takes its kernel `name`.
 ///
 /// # Errors
 /// The source does not build on this device; the message holds the compiler's first lines.
 pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) -> Result<Kernel> {
-    let program = device.program(&source::flatten(path)?)?;
-    let options = CString::new(defines.options())
-        .map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
-    if let Err(error) =
-        core::build_program(&program, Some(&[device.device_id()]), &options, None, None)
+    let source = source::flatten(path)?;
+    let options = defines.options();
+    let kept = device.binaries().path(device.info(), &source, &options);
+    let options =
+        CString::new(options).map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
+    if let Some(kernel) = kept
+        .as_deref()
+        .and_then(binary::read)
+        .and_then(|binary| from_binary(device, &binary, name, &options))
     {
+        return Ok(kernel);
+    }
+    let program = device.program(&source)?;
+    if let Err(error) = compile(device, &program, &options) {
         let log =
             core::get_program_build_info(&program, device.device_id(), ProgramBuildInfo::BuildLog)
                 .map(|log| log.to_string())
@@ -61,6 +69,21 @@ pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) 
             first_lines.join("; ")
         )));
     }
+    if let Some(path) = kept {
+        binary::write(&path, &program);
+    }
     core::create_kernel(&program, name)
         .map_err(|e| device_error(&format!("take the kernel {name}"), &e))
+}
+
+fn compile(device: &Device, program: &Program, options: &CString) -> core::Result<()> {
+    core::build_program(program, Some(&[device.device_id()]), options, None, None)
+}
+
+/// The kernel `name` of a built program; nothing where the driver does not take it.
+fn from_binary(device: &Device, binary: &[u8], name: &str, options: &CString) -> Option<Kernel> {
+    let devices = [device.device_id()];
+    let program = core::create_program_with_binary(device.context(), &devices, &[binary]).ok()?;
+    compile(device, &program, options).ok()?;
+    core::create_kernel(&program, name).ok()
 }

@@ -5,10 +5,8 @@
 //! scene, the planes asked for, and the program itself. So nothing stale is ever taken for the
 //! truth.
 
-use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
 
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
@@ -16,6 +14,7 @@ use flate2::write::ZlibEncoder;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
+use crate::kept::{Kept, asked_for};
 use crate::output::write_atomically;
 use crate::progress::Progress;
 use crate::reference;
@@ -32,7 +31,7 @@ pub struct Truth<'a> {
 
 /// A folder of pictures of one volume.
 struct Cache {
-    folder: PathBuf,
+    kept: Kept,
     /// Of program and volume.
     hasher: blake3::Hasher,
 }
@@ -45,9 +44,6 @@ pub struct TrueFrame {
     /// Why it could not be kept for the next time.
     pub not_kept: Option<Error>,
 }
-
-/// Pictures that were not asked for in so long are removed.
-const KEPT: Duration = Duration::from_secs(30 * 24 * 3600);
 
 impl<'a> Truth<'a> {
     /// Pictures are computed whenever they are asked for.
@@ -64,18 +60,13 @@ impl<'a> Truth<'a> {
     /// # Errors
     /// The folder cannot be made; the program cannot read its own file.
     pub fn kept_in(folder: &Path, volume: &'a Volume) -> Result<Self> {
-        std::fs::create_dir_all(folder)
-            .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
-        forget_old(folder);
+        let kept = Kept::in_folder(folder, EXTENSION)?;
         let mut hasher = blake3::Hasher::new();
         hash_program(&mut hasher)?;
         hasher.update(volume.content_hash().as_bytes());
         Ok(Self {
             volume,
-            cache: Some(Cache {
-                folder: folder.to_owned(),
-                hasher,
-            }),
+            cache: Some(Cache { kept, hasher }),
         })
     }
 
@@ -114,28 +105,12 @@ impl Cache {
         let mut hasher = self.hasher.clone();
         // Debug output names every field, and prints floats so that they read back as they were.
         hasher.update(format!("{scene:?} {wanted:?}").as_bytes());
-        let mut name = String::new();
-        for byte in &hasher.finalize().as_bytes()[..16] {
-            let _ = write!(name, "{byte:02x}");
-        }
-        self.folder.join(format!("{name}.{EXTENSION}"))
+        self.kept.path(&hasher)
     }
 }
 
 /// Of kept pictures.
 const EXTENSION: &str = "frame";
-
-/// Removes the pictures that were not asked for in [`KEPT`], as far as they can be.
-fn forget_old(folder: &Path) {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for path in entries.map(|entry| entry.path()) {
-        let asked = || path.metadata().ok()?.modified().ok()?.elapsed().ok();
-        let is_ours = path.extension().is_some_and(|name| name == EXTENSION);
-        if is_ours && asked().is_some_and(|age| age > KEPT) {
-            let _ = std::fs::remove_file(path);
-        }
-    }
-}
 
 /// The colour and then the other planes, zlib-compressed (whose checksum shows a torn file).
 fn write(path: &Path, frame: &Frame) -> Result<()> {
@@ -160,9 +135,7 @@ fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
     }
     let at_end = file.read(&mut [0]).ok()? == 0;
     if at_end {
-        // So that it is seen to be asked for. Where that cannot be said it is computed again one day.
-        let file = std::fs::File::options().append(true).open(path);
-        let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+        asked_for(path);
     }
     at_end.then_some(frame)
 }

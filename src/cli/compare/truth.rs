@@ -1,8 +1,7 @@
 //! Where the reference's pictures are kept.
 
-use std::path::PathBuf;
-
 use crate::error::Result;
+use crate::kept;
 use crate::measure::Truth;
 use crate::scene::FilePath;
 use crate::volume::Volume;
@@ -18,7 +17,7 @@ pub fn truth(asked: Option<FilePath>, volume: &Volume) -> Result<Truth<'_>> {
         Some(FilePath(path)) => Truth::kept_in(&path, volume)
             .map_err(|error| error.hint("name another folder, or write '--cache off'")),
         None => {
-            let Some(folder) = cache_folder() else {
+            let Some(folder) = kept::users_folder() else {
                 return Ok(Truth::uncached(volume));
             };
             Ok(Truth::kept_in(&folder, volume).unwrap_or_else(|error| {
@@ -29,12 +28,4 @@ pub fn truth(asked: Option<FilePath>, volume: &Volume) -> Result<Truth<'_>> {
             }))
         }
     }
-}
-
-/// Where programs of this system keep what can be made again (XDG Base Directory Specification).
-fn cache_folder() -> Option<PathBuf> {
-    let named = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
-    let named = named.filter(|path| path.is_absolute());
-    let home = || Some(std::env::home_dir()?.join(".cache"));
-    Some(named.or_else(home)?.join("angioray"))
 }

@@ -1,5 +1,6 @@
 //! What must never change one bit of a picture: skipping, the way through the octree, the leaf's
-//! edge, the work-group's size, how many rays a work-item follows side by side.
+//! edge, the work-group's size, how many rays a work-item follows side by side, whether voxels are in a
+//! buffer or an image.
 
 mod common;
 
@@ -9,7 +10,7 @@ use angioray::progress::Silent;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
     ClipPlane, Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod,
-    Refine, Rgb, SamplingMethod, TransferFunction, Traverse, Window,
+    Refine, Rgb, SamplingMethod, Storage, TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
@@ -317,54 +318,77 @@ fn cast_by_each_method(picture: Picture) -> Vec<(Picture, SamplingMethod)> {
     casts
 }
 
-#[test]
-fn any_number_of_lanes_gives_the_same_bytes() {
-    let Some(device) = common::device() else {
-        return;
-    };
+/// Volumes of all types, and the modes in which each is looked at. What reads voxels differs with their
+/// type, all else is the same for all types: of tubes alone all ways to follow rays.
+fn of_all_types() -> Vec<(Volume, Vec<&'static str>)> {
     let signed = volume_of([23, 18, 31], |x, y, z| (hash(x, y, z) * 6e4 - 3e4) as i16);
     let wide = volume_of([18, 27, 22], |x, y, z| (hash(y, z, x) * 6.5e4) as u16);
     let flat = volume_of([1, 24, 17], |x, y, z| (hash(x, y, z) * 255.0) as u8);
-    // What reads voxels differs with their type, all else is the same for all types: of tubes alone all
-    // ways to follow rays.
-    for (volume, modes) in [
-        (tubes(), &["iso", "mip", "minip", "mean", "lmip", "dvr"][..]),
-        (mixed(), &["iso"]),
-        (signed, &["iso"]),
-        (wide, &["mip"]),
-        (flat, &["iso", "mip"]),
-    ] {
+    vec![
+        (tubes(), vec!["iso", "mip", "minip", "mean", "lmip", "dvr"]),
+        (mixed(), vec!["iso"]),
+        (signed, vec!["iso"]),
+        (wide, vec!["mip"]),
+        (flat, vec!["iso", "mip"]),
+    ]
+}
+
+/// What rays of a volume are cast for; where there are many modes, by each method.
+fn casts(volume: &Volume, modes: &[&str]) -> Vec<(Picture, SamplingMethod)> {
+    let wanted = pictures(volume.range().max)
+        .into_iter()
+        .filter(|picture| modes.contains(&picture.mode()));
+    let all_methods = modes.len() > 2;
+    let by_methods = wanted.map(|picture| {
+        if all_methods {
+            cast_by_each_method(picture)
+        } else {
+            vec![(picture, SamplingMethod::Exact)]
+        }
+    });
+    by_methods.flatten().collect()
+}
+
+#[test]
+fn neither_lanes_nor_an_image_of_the_voxels_change_a_byte() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    // What reads an image is the same in all passes: by one lane and by eight in turn.
+    let [one, eight, sixteen] = Lanes::ALL;
+    let mut lanes_of_image = [one, eight].into_iter().cycle();
+    for (volume, modes) in of_all_types() {
         let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
-        let wanted = pictures(volume.range().max)
-            .into_iter()
-            .filter(|picture| modes.contains(&picture.mode()));
-        let all_methods = modes.len() > 2;
-        let casts = wanted.flat_map(|picture| {
-            if all_methods {
-                cast_by_each_method(picture)
-            } else {
-                vec![(picture, SamplingMethod::Exact)]
-            }
-        });
-        for (picture, method) in casts {
-            let [one, eight, sixteen] = Lanes::ALL.map(|lanes| {
-                let options = Options {
-                    lanes: Some(lanes),
-                    ..Options::default()
-                };
-                let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
+        let renderer = |lanes| {
+            let options = Options {
+                lanes: Some(lanes),
+                ..Options::default()
+            };
+            Renderer::new(&device, &volume, &octree, options).unwrap()
+        };
+        let has_images = renderer(one).check_storage(Storage::Image).is_ok();
+        for (picture, method) in casts(&volume, &modes) {
+            let seen = |lanes, storage| {
+                let mut renderer = renderer(lanes);
                 let frames = [Traverse::Hierarchical, Traverse::Distance].map(|traverse| {
                     let mut scene = common::scene(&volume, SIZE_PX, picture.clone());
                     scene.sampling.method = method;
                     scene.sampling.traverse = traverse;
+                    scene.sampling.voxels = storage;
                     picture_bits(&renderer.render(&scene, Wanted::ALL).unwrap().frame)
                 });
-                let what = format!("{} {method:?} {lanes} lanes", picture.mode());
+                let what = format!("{} {method:?} {lanes} lanes {storage}", picture.mode());
                 assert!(frames[0] == frames[1], "{what}");
-                frames
-            });
-            assert!(one == eight, "{} {method:?} 8 lanes", picture.mode());
-            assert!(one == sixteen, "{} {method:?} 16 lanes", picture.mode());
+                (frames, what)
+            };
+            let (first, _) = seen(one, Storage::Buffer);
+            let mut others = vec![(eight, Storage::Buffer), (sixteen, Storage::Buffer)];
+            let imaged = lanes_of_image.next().map(|lanes| (lanes, Storage::Image));
+            others.extend(imaged.filter(|_| has_images));
+            for (lanes, storage) in others {
+                let (frames, what) = seen(lanes, storage);
+                assert!(frames == first, "{what}");
+            }
         }
     }
 }

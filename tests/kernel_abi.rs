@@ -6,7 +6,7 @@ use angioray::extent::ImageSize;
 use angioray::gpu::{Buffer, Pass, Timings, output};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant, struct_layouts};
-use angioray::scene::Filter;
+use angioray::scene::{Filter, Storage};
 use angioray::volume::VoxelType;
 
 #[test]
@@ -20,6 +20,7 @@ fn every_struct_has_the_same_layout_on_the_device() {
         leaf: Leaf::default(),
         wide_index: false,
         lanes: Lanes::ONE,
+        storage: Storage::Buffer,
     };
     let pass = Pass::build(
         &device,

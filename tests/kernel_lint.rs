@@ -10,7 +10,7 @@ use std::thread;
 use angioray::gpu::{files, flatten};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant};
-use angioray::scene::Filter;
+use angioray::scene::{Filter, SamplingMethod, Storage};
 use angioray::volume::VoxelType;
 
 fn kernels() -> PathBuf {
@@ -197,7 +197,13 @@ fn combinations(switches: &[(String, Vec<String>)]) -> Vec<Vec<(String, String)>
     found.into_iter().collect()
 }
 
-fn variant(voxel: VoxelType, filter: Filter, leaf: u32, wide_index: bool) -> String {
+fn variant(
+    voxel: VoxelType,
+    filter: Filter,
+    storage: Storage,
+    leaf: u32,
+    wide_index: bool,
+) -> String {
     let leaf = Leaf::new(leaf).unwrap();
     Variant {
         voxel,
@@ -205,27 +211,35 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32, wide_index: bool) -> Str
         leaf,
         wide_index,
         lanes: Lanes::ONE,
+        storage,
     }
     .defines()
     .options()
 }
 
 /// The [`combinations`] of switches with both filters; with all outputs, also every voxel type, a leaf
-/// that is no power of two, and indices of 64 bits.
+/// that is no power of two, indices of 64 bits, and images.
 fn builds(path: &str) -> Vec<Build> {
     let text = flatten(path).unwrap();
     let mut builds = Vec::new();
-    for (voxel, leaf, wide_index) in [
-        (VoxelType::U8, 8, false),
-        (VoxelType::U16, 8, false),
-        (VoxelType::I16, 8, false),
-        (VoxelType::F32, 8, false),
-        (VoxelType::U8, 5, false),
-        (VoxelType::U8, 8, true),
+    let buffer = Storage::Buffer;
+    for (voxel, storage, leaf, wide_index) in [
+        (VoxelType::U8, buffer, 8, false),
+        (VoxelType::U16, buffer, 8, false),
+        (VoxelType::I16, buffer, 8, false),
+        (VoxelType::F32, buffer, 8, false),
+        (VoxelType::U8, buffer, 5, false),
+        (VoxelType::U8, buffer, 8, true),
+        (VoxelType::I16, Storage::Image, 8, false),
+        (VoxelType::F32, Storage::Image, 8, true),
+        (VoxelType::U8, Storage::Filtered, 8, false),
     ] {
-        let plain = voxel == VoxelType::U8 && leaf == 8 && !wide_index;
+        let plain = voxel == VoxelType::U8 && storage == buffer && leaf == 8 && !wide_index;
         for filter in [Filter::Linear, Filter::Nearest] {
-            let variant = variant(voxel, filter, leaf, wide_index);
+            if storage.check(SamplingMethod::Fixed, filter).is_err() {
+                continue;
+            }
+            let variant = variant(voxel, filter, storage, leaf, wide_index);
             for switches in combinations(&switches(&text, &variant)) {
                 let build = Build {
                     variant: variant.clone(),
@@ -270,7 +284,7 @@ fn every_variant_of_every_kernel_is_without_a_warning() {
 
 #[test]
 fn the_switches_are_read_from_the_kernels() {
-    let variant = variant(VoxelType::U8, Filter::Linear, 8, false);
+    let variant = variant(VoxelType::U8, Filter::Linear, Storage::Buffer, 8, false);
     let of = |path| {
         switches(&flatten(path).unwrap(), &variant)
             .into_iter()
@@ -343,7 +357,7 @@ fn clang_refuses_what_is_wrong() {
     };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wrong.cl");
-    let variant = variant(VoxelType::U8, Filter::Linear, 8, false);
+    let variant = variant(VoxelType::U8, Filter::Linear, Storage::Buffer, 8, false);
     let build = |variant: &str| Build {
         variant: variant.to_owned(),
         switches: Vec::new(),

@@ -45,8 +45,8 @@ typedef struct {
     const global float4 *knot_sums;
     VolumeGrid volume;
     EmissionCast cast;
-#if SHADED
-    GradientSource gradient;
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+    Directions directions;
 #endif
     Shading shading;
     Floats3 toward_eye;
@@ -74,25 +74,26 @@ static inline Medium medium_if(Mask mask, Medium a, Medium b)
     return chosen;
 }
 
-static inline Medium lit_at(const Sight *sight, const Piece *piece, Floats u, Medium medium)
+static inline Medium lit_at(VOXELS voxels, const Sight *sight, const Piece *piece, Floats u, Medium medium)
 {
 #if SHADED
     Floats s = piece->from + piece->width * u;
     Floats3 p = {piece->near.x + s * piece->way.x, piece->near.y + s * piece->way.y, piece->near.z + s * piece->way.z};
-    return lit_medium(sight->gradient, sight->volume, sight->shading, sight->toward_eye, clamp_to_domain(sight->volume, p), medium);
+    p = clamp_to_domain(sight->volume, p);
+    return lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);
 #else
     return medium;
 #endif
 }
 
-static inline Point point_at(const Sight *sight, const Piece *piece, Floats u)
+static inline Point point_at(VOXELS voxels, const Sight *sight, const Piece *piece, Floats u)
 {
     Point point;
     point.value = cubic_at(piece->phi, piece->from + piece->width * u);
     point.after = knots_up_to(sight->transfer, point.value);
     Seen seen = transfer_between(sight->transfer, point.after, point.value);
     Medium medium = {seen.rgb, absorption_per_mm(sight->cast, seen.opacity)};
-    point.medium = lit_at(sight, piece, u, medium);
+    point.medium = lit_at(voxels, sight, piece, u, medium);
     return point;
 }
 
@@ -103,15 +104,15 @@ typedef struct {
 } Lit;
 
 // The panel from u on, `width` wide, in the lanes of `which`.
-static inline Lit panel_of(const Sight *sight, const Piece *piece, const Point *near, const Point *middle, const Point *far, Floats u, Floats width,
-                           Mask which)
+static inline Lit panel_of(VOXELS voxels, const Sight *sight, const Piece *piece, const Point *near, const Point *middle, const Point *far,
+                           Floats u, Floats width, Mask which)
 {
     Floats length_mm = width * piece->length_mm;
     Panel panel = panel_simpson(near->medium, middle->medium, far->medium, length_mm);
     Mask meets_knots = which & near->after != far->after;
     if (ANY(meets_knots)) {
         Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, near->value, far->value);
-        Panel linear = panel_midpoint(lit_at(sight, piece, u + 0.5f * width, mean), length_mm);
+        Panel linear = panel_midpoint(lit_at(voxels, sight, piece, u + 0.5f * width, mean), length_mm);
         panel.rgb.x = meets_knots ? linear.rgb.x : panel.rgb.x;
         panel.rgb.y = meets_knots ? linear.rgb.y : panel.rgb.y;
         panel.rgb.z = meets_knots ? linear.rgb.z : panel.rgb.z;
@@ -160,7 +161,8 @@ static inline Floats unseen(const Sight *sight, const Piece *piece, const Point 
 }
 
 // Adds pieces, in the lanes of `which`. `share_per_mm`: half the bound over the ray's length.
-static inline void gather_pieces(const Sight *sight, Gathered *gathered, const Piece *piece, Floats share_per_mm, Mask which, Ints *samples)
+static inline void gather_pieces(VOXELS voxels, const Sight *sight, Gathered *gathered, const Piece *piece, Floats share_per_mm, Mask which,
+                                 Ints *samples)
 {
     Floats u = FLOATS(0.0f);
     Floats width = FLOATS(1.0f);
@@ -168,13 +170,13 @@ static inline void gather_pieces(const Sight *sight, Gathered *gathered, const P
     if (!ANY(which))
         return;
     Point points[5]; // a quarter of the panel apart
-    points[0] = point_at(sight, piece, FLOATS(0.0f));
+    points[0] = point_at(voxels, sight, piece, FLOATS(0.0f));
     *samples += which ? INTS(1) : INTS(0);
     for (uint tries = 0u; tries < MOST_TRIES && ANY(which); tries++) {
         // Sums of powers of two, not below the least: exact.
         width = least_of(width, 1.0f - u);
         for (uint n = 1u; n < 5u; n++)
-            points[n] = point_at(sight, piece, u + (0.25f * (float)n) * width);
+            points[n] = point_at(voxels, sight, piece, u + (0.25f * (float)n) * width);
         *samples += which ? INTS(4) : INTS(0);
         Lit lits[3]; // the panel and its halves
         for (uint n = 0u; n < 3u; n++) {
@@ -182,7 +184,7 @@ static inline void gather_pieces(const Sight *sight, Gathered *gathered, const P
             uint apart_by = n == 0u ? 2u : 1u;
             Floats begin = n == 2u ? u + 0.5f * width : u;
             Floats wide = n == 0u ? width : 0.5f * width;
-            lits[n] = panel_of(sight, piece, &points[first], &points[first + apart_by], &points[first + 2u * apart_by], begin, wide, which);
+            lits[n] = panel_of(voxels, sight, piece, &points[first], &points[first + apart_by], &points[first + 2u * apart_by], begin, wide, which);
         }
         Lit both = lit_behind(&lits[1], &lits[2]);
         Floats allowed = 0.5f * sight->cast.bound * gathered->transmission * both.opacity
@@ -202,7 +204,7 @@ static inline void gather_pieces(const Sight *sight, Gathered *gathered, const P
 }
 
 // Adds the cells in which rays stand, in the lanes of `which`: a monotone piece after the other.
-static inline void gather_cells(const Sight *sight, Gathered *gathered, const CellWalk *walk, const Corners *corners, CellExit exit,
+static inline void gather_cells(VOXELS voxels, const Sight *sight, Gathered *gathered, const CellWalk *walk, const Corners *corners, CellExit exit,
                                 Floats share_per_mm, Mask which, Ints *samples)
 {
     Moment enters = entry_moment(walk);
@@ -228,12 +230,12 @@ static inline void gather_cells(const Sight *sight, Gathered *gathered, const Ce
         piece.from = ends[n - 1u];
         piece.width = ends[n] - ends[n - 1u];
         piece.length_mm = piece.width * length_mm;
-        gather_pieces(sight, gathered, &piece, share_per_mm, which & piece.width > 0.0f, samples);
+        gather_pieces(voxels, sight, gathered, &piece, share_per_mm, which & piece.width > 0.0f, samples);
     }
 }
 
 // In the lanes of `alive`.
-static inline void gather_along(const Sight *sight, Gathered *gathered, const global VOXEL *voxels, const global uchar *node_class,
+static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gathered, const global uchar *node_class,
                                 const global uint4 *levels, const global uint *cells, Ray ray, Interval interval, Mask alive,
                                 Ints *samples, Ints *nodes_tested)
 {
@@ -300,7 +302,7 @@ static inline void gather_along(const Sight *sight, Gathered *gathered, const gl
         }
         if (ANY(standing)) {
             CellExit exit = cell_exit(&walk, standing);
-            gather_cells(sight, gathered, &walk, &corners, exit, share_per_mm, standing, samples);
+            gather_cells(voxels, sight, gathered, &walk, &corners, exit, share_per_mm, standing, samples);
             Mask goes_on = standing & !exit.ends & gathered->transmission >= cast.least_transmission;
             cells_step(&walk, exit, goes_on);
             alive = alive & !(standing & !goes_on);
@@ -308,7 +310,7 @@ static inline void gather_along(const Sight *sight, Gathered *gathered, const gl
     }
 }
 
-kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                               const global float *knot_values, const global float4 *knot_colors, const global float4 *knot_sums,
                               const global float4 *clip_planes, uint clip_count,
 #if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
@@ -337,19 +339,15 @@ kernel void adaptive_emission(const global VOXEL *voxels, const global uchar *no
         sight.knot_sums = knot_sums;
         sight.volume = volume;
         sight.cast = cast;
-#if SHADED
-#if GRADIENT == GRADIENT_PRECOMPUTED
-        sight.gradient.directions = directions;
-        sight.gradient.grid = direction_grid;
-#else
-        sight.gradient.voxels = voxels;
-#endif
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+        Directions precomputed = {directions, direction_grid};
+        sight.directions = precomputed;
 #endif
         sight.shading = shading;
         sight.toward_eye.x = -ray.dir_world.x;
         sight.toward_eye.y = -ray.dir_world.y;
         sight.toward_eye.z = -ray.dir_world.z;
-        gather_along(&sight, &gathered, voxels, node_class, levels, cells, ray, interval, meets, &sample_count, &node_count);
+        gather_along(voxels, &sight, &gathered, node_class, levels, cells, ray, interval, meets, &sample_count, &node_count);
     }
 
     Floats4 seen = {gathered.rgb.x, gathered.rgb.y, gathered.rgb.z, kept_back(gathered.depth)};

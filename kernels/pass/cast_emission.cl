@@ -21,7 +21,6 @@
 
 // What rays look at.
 typedef struct {
-    const global VOXEL *voxels;
     Transfer transfer;
 #if QUADRATURE == QUADRATURE_PREINTEGRATED
     const global float4 *knot_sums;
@@ -29,25 +28,25 @@ typedef struct {
     VolumeGrid volume;
     Lattice lattice;
     EmissionCast cast;
-#if SHADED
-    GradientSource gradient;
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+    Directions directions;
 #endif
     Shading shading;
     Floats3 toward_eye;
 } Sight;
 
-static inline Floats phi_at(const Sight *sight, Floats t)
+static inline Floats phi_at(VOXELS voxels, const Sight *sight, Floats t)
 {
-    return field_at(sight->voxels, sight->volume, lattice_point(sight->volume, &sight->lattice, t));
+    return field_at(voxels, sight->volume, lattice_point(sight->volume, &sight->lattice, t));
 }
 
 #if QUADRATURE != QUADRATURE_PREINTEGRATED
-static inline Medium medium_at(const Sight *sight, Floats t)
+static inline Medium medium_at(VOXELS voxels, const Sight *sight, Floats t)
 {
-    Medium medium = medium_of(sight->transfer, sight->cast, phi_at(sight, t));
+    Medium medium = medium_of(sight->transfer, sight->cast, phi_at(voxels, sight, t));
 #if SHADED
     Floats3 p = lattice_point(sight->volume, &sight->lattice, t);
-    medium = lit_medium(sight->gradient, sight->volume, sight->shading, sight->toward_eye, p, medium);
+    medium = lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);
 #endif
     return medium;
 }
@@ -63,15 +62,15 @@ typedef Floats Node; // Phi
 
 static inline Node node_if(Mask mask, Node a, Node b) { return mask ? a : b; }
 
-static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
+static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
     Floats length_mm = t_far - t_near;
-    Node last = phi_at(sight, t_far);
+    Node last = phi_at(voxels, sight, t_far);
     Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, *near, last);
     *near = last;
 #if SHADED
     Floats3 middle = lattice_point(sight->volume, &sight->lattice, t_near + 0.5f * length_mm);
-    mean = lit_medium(sight->gradient, sight->volume, sight->shading, sight->toward_eye, middle, mean);
+    mean = lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, middle, mean);
 #endif
     return panel_midpoint(mean, length_mm);
 }
@@ -80,19 +79,19 @@ typedef Floats Node; // samples are not shared
 #define NODE_SAMPLES 1
 #define NODE_UNKNOWN FLOATS(0.0f)
 
-static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
+static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
-    return panel_riemann(medium_at(sight, t_near), t_far - t_near);
+    return panel_riemann(medium_at(voxels, sight, t_near), t_far - t_near);
 }
 #elif QUADRATURE == QUADRATURE_MIDPOINT
 typedef Floats Node; // samples are not shared
 #define NODE_SAMPLES 1
 #define NODE_UNKNOWN FLOATS(0.0f)
 
-static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
+static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
     Floats length_mm = t_far - t_near;
-    return panel_midpoint(medium_at(sight, t_near + 0.5f * length_mm), length_mm);
+    return panel_midpoint(medium_at(voxels, sight, t_near + 0.5f * length_mm), length_mm);
 }
 #else
 typedef Medium Node;
@@ -112,13 +111,13 @@ static inline Node node_if(Mask mask, Node a, Node b)
 #define NODE_SAMPLES 2
 #endif
 
-static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, Node *near)
+static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
     Floats length_mm = t_far - t_near;
     Medium nodes[NODE_SAMPLES + 1];
     nodes[0] = *near;
     for (int n = 1; n <= NODE_SAMPLES; n++)
-        nodes[n] = medium_at(sight, n == NODE_SAMPLES ? t_far : t_near + (float)n * (length_mm / (float)NODE_SAMPLES));
+        nodes[n] = medium_at(voxels, sight, n == NODE_SAMPLES ? t_far : t_near + (float)n * (length_mm / (float)NODE_SAMPLES));
     *near = nodes[NODE_SAMPLES];
 #if QUADRATURE == QUADRATURE_ROMBERG
     return panel_romberg(nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], length_mm);
@@ -132,29 +131,29 @@ static inline Panel panel_at(const Sight *sight, Floats t_near, Floats t_far, No
 
 // Gathers the next panel, in the lanes of `which`: panel k lies between samples k - 1 and k, of which the
 // first may be known from the panel before.
-static inline void gather_panel(const Sight *sight, Gathered *gathered, Stretch *stretch, Node *near, Mask which, Ints *samples)
+static inline void gather_panel(VOXELS voxels, const Sight *sight, Gathered *gathered, Stretch *stretch, Node *near, Mask which, Ints *samples)
 {
     Floats t_near = lattice_t(&sight->lattice, stretch->k - 1);
     Floats t_far = lattice_t(&sight->lattice, stretch->k);
 #ifdef NODE_AT
     Mask missing = which & !stretch->known;
     if (ANY(missing)) {
-        *near = node_if(missing, NODE_AT(sight, t_near), *near);
+        *near = node_if(missing, NODE_AT(voxels, sight, t_near), *near);
         *samples += missing ? INTS(1) : INTS(0);
     }
     Node far = *near;
-    gather(gathered, panel_at(sight, t_near, t_far, &far), which);
+    gather(gathered, panel_at(voxels, sight, t_near, t_far, &far), which);
     *near = node_if(which, far, *near);
     stretch->known = stretch->known | which;
 #else
-    gather(gathered, panel_at(sight, t_near, t_far, near), which);
+    gather(gathered, panel_at(voxels, sight, t_near, t_far, near), which);
 #endif
     *samples += which ? INTS(NODE_SAMPLES) : INTS(0);
     stretch->k += which ? INTS(1) : INTS(0);
 }
 
 // Gathers along rays until each has come to its end, in the lanes of `alive`.
-static inline void gather_along(const Sight *sight, Gathered *gathered, const global uchar *node_class,
+static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gathered, const global uchar *node_class,
 #if HOMOGENEOUS
                                 const global float *node_average,
 #endif
@@ -185,7 +184,7 @@ static inline void gather_along(const Sight *sight, Gathered *gathered, const gl
         if (together) {
             while (ANY(alive) && !ANY(alive & stretch.k <= stretch.last)) {
                 BeamRegion region;
-                if (!beam_next(&beam, sight->voxels, node_class, cells, 0.0f, &region, nodes_tested))
+                if (!beam_next(&beam, voxels, node_class, cells, 0.0f, &region, nodes_tested))
                     alive = NO_LANE;
                 else if (region.class == CLASS_VISIT)
                     stretch_into(&stretch, lattice, &beam, region, &walk, alive);
@@ -220,13 +219,13 @@ static inline void gather_along(const Sight *sight, Gathered *gathered, const gl
         if (!ANY(looking))
             return;
         do {
-            gather_panel(sight, gathered, &stretch, &near, looking, samples);
+            gather_panel(voxels, sight, gathered, &stretch, &near, looking, samples);
             looking = looking & stretch.k <= stretch.last & gathered->transmission >= sight->cast.least_transmission;
         } while (together && ANY(looking));
     }
 }
 
-kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                           const global float *knot_values, const global float4 *knot_colors,
 #if QUADRATURE == QUADRATURE_PREINTEGRATED
                           const global float4 *knot_sums,
@@ -255,7 +254,6 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
     Ints node_count = INTS(0);
     if (ANY(alive)) {
         Sight sight;
-        sight.voxels = voxels;
         sight.transfer.values = knot_values;
         sight.transfer.colors = knot_colors;
         sight.transfer.knots = cast.knots;
@@ -265,22 +263,18 @@ kernel void cast_emission(const global VOXEL *voxels, const global uchar *node_c
         sight.volume = volume;
         sight.lattice = ray_lattice(volume, ray, interval, cast.step_mm);
         sight.cast = cast;
-#if SHADED
-#if GRADIENT == GRADIENT_PRECOMPUTED
-        sight.gradient.directions = directions;
-        sight.gradient.grid = direction_grid;
-#else
-        sight.gradient.voxels = voxels;
-#endif
+#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+        Directions precomputed = {directions, direction_grid};
+        sight.directions = precomputed;
 #endif
         sight.shading = shading;
         sight.toward_eye.x = -ray.dir_world.x;
         sight.toward_eye.y = -ray.dir_world.y;
         sight.toward_eye.z = -ray.dir_world.z;
 #if HOMOGENEOUS
-        gather_along(&sight, &gathered, node_class, node_average, levels, cells, ray, interval, alive, &sample_count, &node_count);
+        gather_along(voxels, &sight, &gathered, node_class, node_average, levels, cells, ray, interval, alive, &sample_count, &node_count);
 #else
-        gather_along(&sight, &gathered, node_class, levels, cells, ray, interval, alive, &sample_count, &node_count);
+        gather_along(voxels, &sight, &gathered, node_class, levels, cells, ray, interval, alive, &sample_count, &node_count);
 #endif
     }
 

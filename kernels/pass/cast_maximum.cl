@@ -21,14 +21,13 @@
 
 // What rays look at.
 typedef struct {
-    const global VOXEL *voxels;
     VolumeGrid volume;
     Lattice lattice;
     ProjectionCast cast;
 } Sight;
 
 #if PROJECTION == PROJECTION_MEAN
-static inline Floats mean_along(const Sight *sight, Mask alive, Ints *samples)
+static inline Floats mean_along(VOXELS voxels, const Sight *sight, Mask alive, Ints *samples)
 {
     const Lattice *lattice = &sight->lattice;
     // Compensated summation (Kahan 1965): thousands of samples keep their digits.
@@ -38,7 +37,7 @@ static inline Floats mean_along(const Sight *sight, Mask alive, Ints *samples)
     Floats t = FLOATS(0.0f);
     for (Ints k = INTS(0); ANY(alive); k += 1) {
         Floats after = lattice_t(lattice, k < lattice->last ? k + 1 : k);
-        Floats v = field_at(sight->voxels, sight->volume, lattice_point(sight->volume, lattice, t));
+        Floats v = field_at(voxels, sight->volume, lattice_point(sight->volume, lattice, t));
         Floats weight = lattice->last == 0 ? FLOATS(1.0f) : 0.5f * (after - before) / lattice->length_mm;
         Floats term = v * weight - lost;
         Floats next = sum + term;
@@ -70,25 +69,25 @@ static inline Mask ties_count(const Sight *sight, const Search *search)
     return PROJECTION == PROJECTION_LOCAL ? search->most >= sight->cast.threshold : NO_LANE;
 }
 
-static inline RayPoint point_at(const Sight *sight, Ints k)
+static inline RayPoint point_at(VOXELS voxels, const Sight *sight, Ints k)
 {
-    return ray_point(sight->voxels, sight->volume, &sight->lattice, FLOATS(sight->cast.sign), 0.0f, lattice_t(&sight->lattice, k));
+    return ray_point(voxels, sight->volume, &sight->lattice, FLOATS(sight->cast.sign), 0.0f, sight->cast.probe, lattice_t(&sight->lattice, k));
 }
 
 // Looks at the next segment, in the lanes of `which`.
-static inline void look(const Sight *sight, Search *search, Mask which)
+static inline void look(VOXELS voxels, const Sight *sight, Search *search, Mask which)
 {
     Ints k = search->stretch.k;
-    RayPoint here = point_at(sight, k);
+    RayPoint here = point_at(voxels, sight, k);
     search->samples += which ? INTS(1) : INTS(0);
     if (sight->cast.probe) {
         Mask missing = which & k > 0 & !search->stretch.known;
         if (ANY(missing)) {
-            search->before = point_if(missing, point_at(sight, k - 1), search->before);
+            search->before = point_if(missing, point_at(voxels, sight, k - 1), search->before);
             search->samples += missing ? INTS(1) : INTS(0);
         }
         RayPoint peak = here;
-        Mask peaks = peak_between(sight->voxels, sight->volume, &sight->lattice, FLOATS(sight->cast.sign), 0.0f, search->most, false,
+        Mask peaks = peak_between(voxels, sight->volume, &sight->lattice, FLOATS(sight->cast.sign), 0.0f, search->most, false,
                                   search->before, here, which & k > 0, &peak, &search->samples);
         search->most = peaks ? peak.height : search->most;
         search->most_mm = peaks ? peak.t : search->most_mm;
@@ -103,7 +102,7 @@ static inline void look(const Sight *sight, Search *search, Mask which)
 }
 
 // Looks along rays, in the lanes of `alive`.
-static inline void look_along(const Sight *sight, Search *search, const global uchar *node_class, const global float2 *node_range,
+static inline void look_along(VOXELS voxels, const Sight *sight, Search *search, const global uchar *node_class, const global float2 *node_range,
                               const global uint4 *levels, Ray ray, Interval interval, Mask alive, Ints *nodes_tested)
 {
     const Lattice *lattice = &sight->lattice;
@@ -130,7 +129,7 @@ static inline void look_along(const Sight *sight, Search *search, const global u
                 BeamRegion region;
                 Mask ties = ties_count(sight, search);
                 float beat = LEAST_LANE(alive ? search->most : FLOATS(INFINITY));
-                if (!beam_next_to_beat(&beam, sight->voxels, node_class, node_range, sign, beat, ANY(alive & ties), &region, nodes_tested)) {
+                if (!beam_next_to_beat(&beam, voxels, node_class, node_range, sign, beat, ANY(alive & ties), &region, nodes_tested)) {
                     alive = NO_LANE;
                 } else {
                     Mask leaves_out = stretch_into(&search->stretch, lattice, &beam, region, &walk, alive);
@@ -155,12 +154,12 @@ static inline void look_along(const Sight *sight, Search *search, const global u
         Mask looking = alive & search->stretch.k <= search->stretch.last;
         if (!ANY(looking))
             return;
-        look(sight, search, looking);
+        look(voxels, sight, search, looking);
     }
 }
 #endif
 
-kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range, const global uint4 *levels,
+kernel void cast_maximum(VOXELS voxels, const global uchar *node_class, const global float2 *node_range, const global uint4 *levels,
                             const global float4 *clip_planes, uint clip_count,
                             VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                             global uint *kind, global float *value
@@ -178,7 +177,6 @@ kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_cl
     clip_interval(&interval, clip_planes, clip_count, ray);
     Mask meets = pixels.inside & interval.enter <= interval.exit;
     Sight sight;
-    sight.voxels = voxels;
     sight.volume = volume;
     sight.lattice = ray_lattice(volume, ray, interval, cast.step_mm);
     sight.cast = cast;
@@ -188,11 +186,11 @@ kernel void cast_maximum(const global VOXEL *voxels, const global uchar *node_cl
     Ints node_count = INTS(0);
     if (ANY(meets)) {
 #if PROJECTION == PROJECTION_MEAN
-        found = mean_along(&sight, meets, &sample_count);
+        found = mean_along(voxels, &sight, meets, &sample_count);
 #else
         Search search;
         search.samples = INTS(0);
-        look_along(&sight, &search, node_class, node_range, levels, ray, interval, meets, &node_count);
+        look_along(voxels, &sight, &search, node_class, node_range, levels, ray, interval, meets, &node_count);
         found = cast.sign * search.most;
         found_mm = search.most_mm;
         sample_count = search.samples;

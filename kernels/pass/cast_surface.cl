@@ -17,7 +17,6 @@
 
 // What rays look at.
 typedef struct {
-    const global VOXEL *voxels;
     VolumeGrid volume;
     Lattice lattice;
     SurfaceCast cast;
@@ -33,23 +32,23 @@ typedef struct {
     Ints samples;
 } Search;
 
-static inline RayPoint point_at(const Sight *sight, Ints k)
+static inline RayPoint point_at(VOXELS voxels, const Sight *sight, Ints k)
 {
-    return ray_point(sight->voxels, sight->volume, &sight->lattice, FLOATS(1.0f), sight->cast.iso, lattice_t(&sight->lattice, k));
+    return ray_point(voxels, sight->volume, &sight->lattice, FLOATS(1.0f), sight->cast.iso, sight->cast.probe, lattice_t(&sight->lattice, k));
 }
 
 // Looks at the next segment, in the lanes of `which`.
-static inline void look(const Sight *sight, Search *search, Mask which)
+static inline void look(VOXELS voxels, const Sight *sight, Search *search, Mask which)
 {
     Ints k = search->stretch.k;
     Mask first = k == 0;
     Mask missing = which & !first & !search->stretch.known;
     if (ANY(missing)) {
-        search->before = point_if(missing, point_at(sight, k - 1), search->before);
+        search->before = point_if(missing, point_at(voxels, sight, k - 1), search->before);
         search->samples += missing ? INTS(1) : INTS(0);
     }
     RayPoint before = search->before;
-    RayPoint here = point_at(sight, k);
+    RayPoint here = point_at(voxels, sight, k);
     search->samples += which ? INTS(1) : INTS(0);
     Mask inside = here.height >= 0.0f;
     Mask crosses = which & !first & (inside ^ (before.height >= 0.0f));
@@ -60,7 +59,7 @@ static inline void look(const Sight *sight, Search *search, Mask which)
         RayPoint a = {before.t, sign * before.height, sign * before.slope};
         RayPoint b = {here.t, sign * here.height, sign * here.slope};
         RayPoint peak = b;
-        Mask turns = peak_between(sight->voxels, sight->volume, &sight->lattice, sign, sight->cast.iso, FLOATS(0.0f), true, a, b,
+        Mask turns = peak_between(voxels, sight->volume, &sight->lattice, sign, sight->cast.iso, FLOATS(0.0f), true, a, b,
                                   which & !first & !crosses, &peak, &search->samples);
         far = turns ? peak.t : far;
         f_far = turns ? sign * peak.height : f_far;
@@ -78,7 +77,7 @@ static inline void look(const Sight *sight, Search *search, Mask which)
 }
 
 // Looks along rays until each has met the surface or its end, in the lanes of `alive`.
-static inline void look_along(const Sight *sight, Search *search, const global uchar *node_class, const global uint4 *levels,
+static inline void look_along(VOXELS voxels, const Sight *sight, Search *search, const global uchar *node_class, const global uint4 *levels,
                               const global uint *cells, Ray ray, Interval interval, Mask alive, Ints *nodes_tested)
 {
     const Lattice *lattice = &sight->lattice;
@@ -98,7 +97,7 @@ static inline void look_along(const Sight *sight, Search *search, const global u
         if (together) {
             while (ANY(alive) && !ANY(alive & search->stretch.k <= search->stretch.last)) {
                 BeamRegion region;
-                if (!beam_next(&beam, sight->voxels, node_class, cells, sight->cast.iso, &region, nodes_tested)) {
+                if (!beam_next(&beam, voxels, node_class, cells, sight->cast.iso, &region, nodes_tested)) {
                     alive = NO_LANE;
                 } else if (region.class == CLASS_VISIT) {
                     stretch_into(&search->stretch, lattice, &beam, region, &walk, alive);
@@ -125,11 +124,11 @@ static inline void look_along(const Sight *sight, Search *search, const global u
         Mask looking = alive & search->stretch.k <= search->stretch.last;
         if (!ANY(looking))
             return;
-        look(sight, search, looking);
+        look(voxels, sight, search, looking);
     }
 }
 
-kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void cast_surface(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
                          const global float4 *clip_planes, uint clip_count,
                          VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                          global float *hit_mm, global uint *kind
@@ -147,7 +146,6 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
     clip_interval(&interval, clip_planes, clip_count, ray);
     Mask meets = pixels.inside & interval.enter <= interval.exit;
     Sight sight;
-    sight.voxels = voxels;
     sight.volume = volume;
     sight.lattice = ray_lattice(volume, ray, interval, cast.step_mm);
     sight.cast = cast;
@@ -160,7 +158,7 @@ kernel void cast_surface(const global VOXEL *voxels, const global uchar *node_cl
     Ints node_count = INTS(0);
     Floats met_mm = FLOATS(0.0f); // from the entry; a cap lies there
     if (ANY(meets))
-        look_along(&sight, &search, node_class, levels, cells, ray, interval, meets, &node_count);
+        look_along(voxels, &sight, &search, node_class, levels, cells, ray, interval, meets, &node_count);
     Mask crossed = search.kind == KIND_SURFACE;
     if (ANY(crossed)) {
         Floats refined = refine(voxels, volume, &sight.lattice, cast.iso, cast.refine, (int)cast.iterations, search.bracket, crossed, &search.samples);

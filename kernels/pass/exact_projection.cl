@@ -36,7 +36,7 @@ typedef struct {
 } Search;
 
 #if PROJECTION == PROJECTION_MEAN
-static inline Floats mean_along(const global VOXEL *voxels, VolumeGrid volume, Ray ray, Interval interval, Mask alive, Ints *cells_read)
+static inline Floats mean_along(VOXELS voxels, VolumeGrid volume, Ray ray, Interval interval, Mask alive, Ints *cells_read)
 {
     CellWalk walk = cells_start(volume, ray, interval);
     // Compensated summation (Kahan 1965): thousands of cells keep their digits.
@@ -171,7 +171,7 @@ static inline Floats nearly_most(const CellWalk *walk, const Corners *corners, F
 #endif
 
 // Walks the cells of the box, in the lanes of `alive` that stand in it; gives the lanes that go on.
-static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *walk, const CellBox *box, const global VOXEL *voxels,
+static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *walk, const CellBox *box, VOXELS voxels,
                               VolumeGrid volume, Mask alive, Ints *cells_read)
 {
     Mask reading = alive & box_holds(box, walk->cell);
@@ -207,7 +207,7 @@ static inline Mask search_box(Search *search, ProjectionCast cast, CellWalk *wal
     return alive;
 }
 
-static inline void search_along(Search *search, const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range,
+static inline void search_along(Search *search, VOXELS voxels, const global uchar *node_class, const global float2 *node_range,
                                 const global uint4 *levels, VolumeGrid volume, Ray ray, Interval interval, ProjectionCast cast, Mask alive,
                                 Ints *cells_read, Ints *nodes_tested)
 {
@@ -296,7 +296,7 @@ static inline void search_along(Search *search, const global VOXEL *voxels, cons
 }
 #endif
 
-kernel void exact_projection(const global VOXEL *voxels, const global uchar *node_class, const global float2 *node_range,
+kernel void exact_projection(VOXELS voxels, const global uchar *node_class, const global float2 *node_range,
                              const global uint4 *levels, const global float4 *clip_planes, uint clip_count,
                              VolumeGrid volume, RayGrid rays, ProjectionCast cast,
                              global uint *kind, global float *value

@@ -5,7 +5,7 @@
 // units, and steps, their number: both 0 where the ray misses the volume or crosses less of it than a step.
 #include "lib/field.clh"
 
-kernel void sample_field(const global VOXEL *voxels, VolumeGrid volume, RayGrid rays, float step_mm,
+kernel void sample_field(VOXELS voxels, VolumeGrid volume, RayGrid rays, float step_mm,
                          global float *value, global uint *steps)
 {
     Pixels pixels = tile_pixels(rays);

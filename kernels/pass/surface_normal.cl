@@ -11,7 +11,7 @@ kernel void surface_normal(
 #if GRADIENT == GRADIENT_PRECOMPUTED
                            const global short *directions, uint4 direction_grid,
 #else
-                           const global VOXEL *voxels,
+                           VOXELS voxels,
 #endif
                            const global float4 *clip_planes, uint clip_count,
                            VolumeGrid volume, RayGrid rays,
@@ -30,14 +30,10 @@ kernel void surface_normal(
             Floats mm = pixels_floats(hit_mm, pixels);
             Pair3 at = ray_at(ray, surface ? mm : FLOATS(0.0f));
             Floats3 p = {at.x.high, at.y.high, at.z.high};
-            GradientSource source;
 #if GRADIENT == GRADIENT_PRECOMPUTED
-            source.directions = directions;
-            source.grid = direction_grid;
-#else
-            source.voxels = voxels;
+            Directions precomputed = {directions, direction_grid};
 #endif
-            Floats3 slope = field_normal(source, volume, clamp_to_domain(volume, p), toward_eye);
+            Floats3 slope = field_normal(GRADIENT_FROM(voxels, precomputed), volume, clamp_to_domain(volume, p), toward_eye);
             n.x = surface ? slope.x : n.x;
             n.y = surface ? slope.y : n.y;
             n.z = surface ? slope.z : n.z;

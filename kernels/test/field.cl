@@ -2,7 +2,7 @@
 #define LANES 1
 #include "lib/field.clh"
 
-kernel void field(uint count, uint4 size, const global VOXEL *voxels, const global float4 *points,
+kernel void field(uint count, uint4 size, VOXELS voxels, const global float4 *points,
                   const global float4 *dirs, global float *values, global float2 *with_slope)
 {
     uint i = get_global_id(0);

@@ -7,7 +7,7 @@ kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 
 #if GRADIENT == GRADIENT_PRECOMPUTED
                      const global short *directions, uint4 direction_grid,
 #else
-                     const global VOXEL *voxels,
+                     VOXELS voxels,
 #endif
                      const global float4 *points, float4 fallback,
                      global float4 *gradients, global float4 *normals)
@@ -22,17 +22,13 @@ kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 
     volume.gradient_row_x = row_x;
     volume.gradient_row_y = row_y;
     volume.gradient_row_z = row_z;
-    GradientSource source;
 #if GRADIENT == GRADIENT_PRECOMPUTED
-    source.directions = directions;
-    source.grid = direction_grid;
-#else
-    source.voxels = voxels;
+    Directions precomputed = {directions, direction_grid};
 #endif
     Floats3 p = {points[i].x, points[i].y, points[i].z};
     Floats3 instead = {fallback.x, fallback.y, fallback.z};
-    Floats3 gradient = field_gradient(source, volume, p);
-    Floats3 normal = field_normal(source, volume, p, instead);
+    Floats3 gradient = field_gradient(GRADIENT_FROM(voxels, precomputed), volume, p);
+    Floats3 normal = field_normal(GRADIENT_FROM(voxels, precomputed), volume, p, instead);
     gradients[i] = (float4)(gradient.x, gradient.y, gradient.z, 0.0f);
     normals[i] = (float4)(normal.x, normal.y, normal.z, 0.0f);
 }

@@ -2,7 +2,7 @@
 #define LANES 1
 #include "lib/peak.clh"
 
-kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 start, float4 dir, float length_mm, uint first,
+kernel void peak(uint count, uint4 size, VOXELS voxels, float4 start, float4 dir, float length_mm, uint first,
                  const global float4 *rays, global float4 *peaks, global uint *found)
 {
     uint i = get_global_id(0);
@@ -21,8 +21,8 @@ kernel void peak(uint count, uint4 size, const global VOXEL *voxels, float4 star
     lattice.dir.z = dir.z;
     lattice.length_mm = length_mm;
     float sign = rays[i].z;
-    RayPoint a = ray_point(voxels, volume, &lattice, sign, 0.0f, rays[i].x);
-    RayPoint b = ray_point(voxels, volume, &lattice, sign, 0.0f, rays[i].y);
+    RayPoint a = ray_point(voxels, volume, &lattice, sign, 0.0f, true, rays[i].x);
+    RayPoint b = ray_point(voxels, volume, &lattice, sign, 0.0f, true, rays[i].y);
     RayPoint best = {0.0f, 0.0f, 0.0f};
     Ints samples = INTS(0);
     found[i] = peak_between(voxels, volume, &lattice, sign, 0.0f, rays[i].w, first != 0u, a, b, ALL_LANES, &best, &samples) ? 1u : 0u;

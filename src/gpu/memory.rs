@@ -9,6 +9,19 @@ use crate::error::{Error, Result};
 
 use super::{Device, Element, device_error};
 
+/// Whether the device gives so many bytes in one piece.
+pub(super) fn check_allocation(device: &Device, what: &str, bytes: usize) -> Result<()> {
+    let most = device.info().max_allocation_bytes;
+    if bytes as u64 <= most {
+        return Ok(());
+    }
+    Err(Error::failed(format!(
+        "the {what} needs {bytes} bytes in one piece, the device '{}' allows {most}",
+        device.info().name
+    ))
+    .hint("choose a smaller picture or volume, or another --device"))
+}
+
 /// A device buffer whose element type is known at run time only.
 pub struct AnyBuffer {
     mem: Mem,
@@ -18,14 +31,7 @@ pub struct AnyBuffer {
 
 impl AnyBuffer {
     fn new(device: &Device, what: &str, bytes: usize, cl_name: &'static str) -> Result<Self> {
-        let most = device.info().max_allocation_bytes;
-        if bytes as u64 > most {
-            return Err(Error::failed(format!(
-                "the {what} needs {bytes} bytes in one piece, the device '{}' allows {most}",
-                device.info().name
-            ))
-            .hint("choose a smaller picture or volume, or another --device"));
-        }
+        check_allocation(device, what, bytes)?;
         // An empty buffer cannot be made: hold at least one byte.
         // SAFETY: no host memory is handed over.
         let mem = unsafe {

@@ -3,6 +3,7 @@
 mod binary;
 mod device;
 mod element;
+mod image;
 pub mod loader;
 mod memory;
 mod pass;
@@ -12,8 +13,9 @@ mod timing;
 
 pub use device::{Device, DeviceInfo, DeviceKind};
 pub use element::Element;
+pub use image::{Channel, Image};
 pub use memory::{AnyBuffer, Buffer};
-pub use pass::{Launch, Parameter, Pass, input, input_of, output, value};
+pub use pass::{Launch, Parameter, Pass, image, input, input_of, output, value};
 pub use program::Defines;
 pub use source::{files, flatten};
 pub use timing::{PassTime, Timings};

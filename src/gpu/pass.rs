@@ -8,13 +8,13 @@ use ocl::core::{
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{AnyBuffer, Buffer, Defines, Device, Element, Timings, device_error, program};
+use super::{AnyBuffer, Buffer, Defines, Device, Element, Image, Timings, device_error, program};
 
 /// One argument of a kernel, as its Rust function means it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameter {
     name: &'static str,
-    /// As OpenCL tells it: `float*` for a buffer, `RayGrid` for a value.
+    /// As OpenCL tells it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
     type_name: String,
 }
 
@@ -35,6 +35,17 @@ pub fn input_of(name: &'static str, cl_name: &str) -> Parameter {
 pub fn output<T: Element>(name: &'static str) -> Parameter {
     input::<T>(name)
 }
+
+/// A three-dimensional image that the pass reads.
+pub fn image(name: &'static str) -> Parameter {
+    Parameter {
+        name,
+        type_name: IMAGE.to_owned(),
+    }
+}
+
+/// As OpenCL tells an image's type.
+const IMAGE: &str = "image3d_t";
 
 /// A number or struct handed over by value.
 pub fn value<T: Element>(name: &'static str) -> Parameter {
@@ -150,6 +161,11 @@ impl<'a> Launch<'a> {
     /// As [`Launch::input`], for a buffer that the pass writes.
     pub fn output<T: Element>(self, buffer: &'a mut Buffer<T>) -> Self {
         self.input(buffer)
+    }
+
+    /// As [`Launch::input`], for an image.
+    pub fn image(self, image: &'a Image) -> Self {
+        self.give(IMAGE, ArgVal::mem(image.mem()))
     }
 
     pub fn value<T: Element>(self, value: &T) -> Self {

@@ -43,6 +43,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/spans.clh",
     "lib/stretches.clh",
     "lib/transfer.clh",
+    "lib/voxels.clh",
     "pass/adaptive_emission.cl",
     "pass/cast_emission.cl",
     "pass/cast_maximum.cl",

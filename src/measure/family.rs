@@ -1,13 +1,16 @@
 //! What a scene's way of following rays is called in plots.
 
-use crate::scene::{Filter, Picture, QuadratureMethod, SamplingMethod, Scene};
+use crate::scene::{Filter, Picture, QuadratureMethod, SamplingMethod, Scene, Storage};
 
-/// The rule of quadrature of an integral, how anything else is sampled; the nearest filter, whose
-/// picture is of another field, before both.
+/// The rule of quadrature of an integral, how anything else is sampled; before both the nearest filter
+/// and the device's own, whose pictures are of other fields.
 pub fn family(scene: &Scene) -> String {
     let sampling = &scene.sampling;
     if sampling.filter == Filter::Nearest {
         return "nearest".into();
+    }
+    if sampling.voxels == Storage::Filtered {
+        return "filtered".into();
     }
     match &scene.picture {
         Picture::Emission(medium) => match medium.quadrature.method {

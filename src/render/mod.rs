@@ -21,6 +21,7 @@ mod rays;
 mod reach;
 mod twins;
 mod variant;
+mod voxels;
 
 pub use directions::{AngleError, Directions};
 pub use gradient::GradientFigures;

@@ -9,9 +9,9 @@ use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
-use crate::gpu::{AnyBuffer, Buffer, Device, PassTime, Timings};
+use crate::gpu::{Buffer, Device, PassTime, Timings};
 use crate::octree::Octree;
-use crate::scene::{Picture, Sampling, Scene};
+use crate::scene::{Picture, Sampling, Scene, Storage};
 use crate::volume::Volume;
 
 use super::classified::{Classified, Criterion};
@@ -24,7 +24,8 @@ use super::picture::{self, View};
 use super::planes::check_room;
 use super::rays::{ray_grid, volume_grid};
 use super::twins;
-use super::variant::{MOST_SAMPLES, Variant, voxel_cl_name};
+use super::variant::{MOST_SAMPLES, Variant};
+use super::voxels::{DeviceVoxels, HeldVoxels};
 
 /// How the device is used; never changes a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -41,6 +42,7 @@ pub struct Renderer<'a> {
     volume: &'a Volume,
     octree: &'a Octree,
     uploaded: DeviceVolume,
+    voxels: HeldVoxels,
     /// Those of the last picture that needed some.
     directions: Option<DeviceDirections>,
     /// For the last picture.
@@ -77,7 +79,7 @@ pub struct Rendering {
 }
 
 impl<'a> Renderer<'a> {
-    /// Uploads the volume.
+    /// Uploads the octree. The voxels follow with the first picture, as it wants them held.
     ///
     /// # Errors
     /// The device has no room, or cannot run work-groups of the wanted size.
@@ -95,10 +97,8 @@ impl<'a> Renderer<'a> {
             .iter()
             .map(|level| [level.size[0], level.size[1], level.size[2], level.offset])
             .collect();
-        let voxel = voxel_cl_name(volume.voxels().voxel_type());
         let uploaded = DeviceVolume {
             grid: volume_grid(volume, levels.len() as u32),
-            voxels: AnyBuffer::upload(device, "volume", volume.voxels().bytes(), voxel)?,
             levels: Buffer::upload(device, "octree's levels", &levels)?,
             node_range: Buffer::upload(device, "octree's ranges", octree.ranges())?,
         };
@@ -107,6 +107,7 @@ impl<'a> Renderer<'a> {
             volume,
             octree,
             uploaded,
+            voxels: HeldVoxels::default(),
             directions: None,
             classified: None,
             built: Built::default(),
@@ -120,6 +121,27 @@ impl<'a> Renderer<'a> {
     /// What is looked at.
     pub fn volume(&self) -> &'a Volume {
         self.volume
+    }
+
+    /// Whether the device can hold the volume in this way.
+    ///
+    /// # Errors
+    /// The device has no images, none so large, or none of the voxels' type.
+    pub fn check_storage(&self, storage: Storage) -> Result<()> {
+        DeviceVoxels::check(self.device, self.volume, storage)
+    }
+
+    /// Uploads the voxels as they are to be held, unless they are there; this is upload time.
+    fn upload_voxels(&mut self, storage: Storage) -> Result<()> {
+        let start = Instant::now();
+        let uploaded_before = self.device.uploaded_bytes();
+        self.voxels.held(self.device, self.volume, storage)?;
+        let bytes = self.device.uploaded_bytes() - uploaded_before;
+        if bytes > 0 {
+            self.upload_ms += start.elapsed().as_secs_f64() * 1e3;
+            self.uploaded_bytes += bytes;
+        }
+        Ok(())
     }
 
     /// Computes and uploads the gradients that the picture needs precomputed, unless those of the last
@@ -141,15 +163,19 @@ impl<'a> Renderer<'a> {
     /// Casts a scene; computes only the planes that are wanted.
     ///
     /// # Errors
-    /// The device fails or has no room, or the step is too small to count samples.
+    /// The device fails or has no room, cannot hold the voxels as the sampling wants them, or the
+    /// step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
         check_step(scene, self.volume)?;
+        let storage = scene.sampling.voxels;
+        storage.check(scene.sampling_method(), scene.sampling.filter)?;
+        self.upload_voxels(storage)?;
         let uploaded_before = self.device.uploaded_bytes();
         self.precompute(scene, wanted)?;
         let directions = self.directions.as_ref();
         let directions_bytes = directions.map_or(0, |directions| directions.figures.bytes);
         let directions = directions.filter(|_| gradient::needed(scene, wanted).is_some());
-        let held_bytes = self.uploaded.bytes() + directions_bytes;
+        let held_bytes = self.uploaded.bytes() + self.voxels.bytes() + directions_bytes;
         check_room(self.device, scene.size, wanted, held_bytes)?;
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, self.volume, self.octree);
@@ -175,6 +201,7 @@ impl<'a> Renderer<'a> {
             size: scene.size,
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling, self.lanes),
+            voxels: self.voxels.held(self.device, self.volume, storage)?,
         };
         let world_from_index = self.volume.geometry().world_from_index();
         let clip = DeviceClip::upload(self.device, &scene.clip_planes, world_from_index)?;

@@ -5,7 +5,7 @@ use crate::gpu::Defines;
 use crate::octree::{Leaf, Octree};
 use crate::scene::{
     ClipPlane, Filter, Gradient, Phong, QuadratureMethod, Refine, RefineMethod, Reflection,
-    Sampling, Traverse,
+    Sampling, Storage, Traverse,
 };
 use crate::volume::{Volume, VoxelType};
 
@@ -23,6 +23,7 @@ pub struct Variant {
     /// More voxels than 32 bits count.
     pub wide_index: bool,
     pub lanes: Lanes,
+    pub storage: Storage,
 }
 
 /// The OpenCL name of a voxel type.
@@ -45,6 +46,7 @@ impl Variant {
             leaf: octree.leaf(),
             wide_index,
             lanes: if wide_index { Lanes::ONE } else { lanes },
+            storage: sampling.voxels,
         }
     }
 
@@ -54,10 +56,19 @@ impl Variant {
             .with("VOXEL", voxel_cl_name(self.voxel))
             .with("INDEX", if self.wide_index { "ulong" } else { "uint" })
             .with("LEAF", format!("{}u", self.leaf))
-            .with("FILTER_LINEAR", u32::from(self.filter == Filter::Linear));
+            .with("FILTER_LINEAR", u32::from(self.filter == Filter::Linear))
+            .with("STORAGE", storage_constant(self.storage));
         CONSTANTS.iter().fold(defines, |defines, &(name, number)| {
             defines.with(name, number)
         })
+    }
+}
+
+const fn storage_constant(storage: Storage) -> u32 {
+    match storage {
+        Storage::Buffer => 0,
+        Storage::Image => 1,
+        Storage::Filtered => 2,
     }
 }
 
@@ -166,6 +177,9 @@ const CONSTANTS: &[(&str, u32)] = &[
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
     ("KIND_CAP", Kind::Cap as u32),
+    ("STORAGE_BUFFER", storage_constant(Storage::Buffer)),
+    ("STORAGE_IMAGE", storage_constant(Storage::Image)),
+    ("STORAGE_FILTERED", storage_constant(Storage::Filtered)),
     ("TRAVERSE_OFF", TRAVERSE_OFF),
     ("TRAVERSE_UNIFORM", traverse_constant(Traverse::Uniform)),
     (

@@ -29,7 +29,7 @@ pub use options::*;
 pub use path::{FrameCount, Orbit, OrbitAxis};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
-pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Traverse};
+pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse};
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};
 pub use view::{Orientation, fit_distance_mm};
@@ -49,6 +49,16 @@ pub struct Scene {
     /// Of normals, in the layer and in shading.
     pub gradient: Gradient,
     pub tone: Tone,
+}
+
+impl Scene {
+    /// How this picture's rays are sampled: an integral's as its quadrature is.
+    pub fn sampling_method(&self) -> SamplingMethod {
+        match &self.picture {
+            Picture::Emission(medium) => medium.quadrature.sampling(),
+            Picture::Surface { .. } | Picture::Projection { .. } => self.sampling.method,
+        }
+    }
 }
 
 /// From linear light to a display picture. Never touches EXR or NPY.

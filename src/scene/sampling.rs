@@ -40,6 +40,47 @@ impl Traverse {
     ];
 }
 
+/// How a device holds the voxels and reads them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Storage {
+    /// In a buffer.
+    #[default]
+    Buffer,
+    /// In an image, voxel by voxel; the same picture as from a buffer.
+    Image,
+    /// In an image whose own linear filter gives the field's samples. GPUs filter with weights of eight
+    /// bits (CUDA C++ Programming Guide, Texture Fetching, Linear Filtering).
+    Filtered,
+}
+
+impl Storage {
+    pub const ALL: [Self; 3] = [Self::Buffer, Self::Image, Self::Filtered];
+
+    /// Whether rays can be followed in this way.
+    ///
+    /// # Errors
+    /// Usage: the device is to filter where cells are solved from their voxels, or where nothing is
+    /// filtered.
+    pub fn check(self, method: SamplingMethod, filter: Filter) -> Result<()> {
+        if self != Self::Filtered {
+            return Ok(());
+        }
+        if method == SamplingMethod::Exact {
+            return Err(Error::usage(
+                "'voxels' = filtered does not go with exact sampling, which solves the field from the voxels themselves",
+            )
+            .hint("say --sampling fixed, in dvr a --quad of fixed steps; or --voxels image"));
+        }
+        if filter == Filter::Nearest {
+            return Err(Error::usage(
+                "'voxels' = filtered does not go with 'filter' = nearest, which takes voxels as they are",
+            )
+            .hint("leave one of both out, or say --voxels image"));
+        }
+        Ok(())
+    }
+}
+
 /// Where on a ray the field is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SamplingMethod {
@@ -136,6 +177,7 @@ pub struct Sampling {
     /// Whether surfaces and extrema are also looked for between two samples where the field's
     /// slopes along the ray point at a peak; without it a fixed step is all there is.
     pub probe: bool,
+    pub voxels: Storage,
 }
 
 impl Sampling {
@@ -152,6 +194,7 @@ impl Default for Sampling {
             traverse: Traverse::Distance,
             skip: true,
             probe: true,
+            voxels: Storage::default(),
         }
     }
 }
@@ -159,6 +202,19 @@ impl Default for Sampling {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_linear_samples_at_fixed_steps_are_filtered_by_the_device() {
+        for method in [SamplingMethod::Fixed, SamplingMethod::Exact] {
+            for filter in [Filter::Linear, Filter::Nearest] {
+                let filtered = method == SamplingMethod::Fixed && filter == Filter::Linear;
+                for storage in Storage::ALL {
+                    let allowed = filtered || storage != Storage::Filtered;
+                    assert_eq!(storage.check(method, filter).is_ok(), allowed);
+                }
+            }
+        }
+    }
 
     #[test]
     fn refiners_parse_and_print() {

@@ -74,7 +74,7 @@ fn constant() {
 fn types() {
     // Voxels cut to eight bits: a byte's type for all.
     let eight_bits = kernel(
-        "lib/field.clh",
+        "lib/voxels.clh",
         &[
             (
                 "AS_FLOATS(GATHER(Ints, voxels, i))",
@@ -246,7 +246,7 @@ const INDEX: &str = "(AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_IN
 #[test]
 fn wide_index() {
     let sixteen_bits = kernel(
-        "lib/field.clh",
+        "lib/voxels.clh",
         &[(
             INDEX,
             "((AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x)) & 0xffffu",
@@ -274,7 +274,7 @@ typedef ulong16 Index;
 #endif",
     )];
     let caught = std::panic::catch_unwind(|| {
-        assert_caught("volumes::wide_index", "lib/field.clh", &sixty_four);
+        assert_caught("volumes::wide_index", "lib/voxels.clh", &sixty_four);
     });
     assert!(caught.is_err(), "64 bits change the picture");
 }

@@ -18,7 +18,7 @@ use angioray::extent::ImageSize;
 use angioray::gpu::{Buffer, Device, Element, Launch, Parameter, Pass, Timings};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant};
-use angioray::scene::Filter;
+use angioray::scene::{Filter, Storage};
 use angioray::volume::VoxelType;
 
 /// A variant with leaves of `leaf` cells.
@@ -29,6 +29,7 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32) -> Variant {
         leaf: Leaf::new(leaf).unwrap(),
         wide_index: false,
         lanes: Lanes::ONE,
+        storage: Storage::Buffer,
     }
 }
 

@@ -58,9 +58,9 @@ pub fn adaptive_emission(
             signature.extend(Counters::parameters(with_counters));
             signature
         })?;
-    let launch = pass
-        .launch(run.device)
-        .input(&volume.voxels)
+    let launch = run
+        .voxels
+        .give(pass.launch(run.device))
         .input(&classified.node_class)
         .input(&volume.levels)
         .input(&classified.cells)

@@ -85,9 +85,9 @@ pub fn cast_emission(
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let mut launch = pass
-        .launch(run.device)
-        .input(&volume.voxels)
+    let mut launch = run
+        .voxels
+        .give(pass.launch(run.device))
         .input(&classified.node_class)
         .input(&volume.levels)
         .input(&classified.cells)

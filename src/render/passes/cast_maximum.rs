@@ -52,9 +52,9 @@ pub fn cast_maximum(
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let mut launch = pass
-        .launch(run.device)
-        .input(&volume.voxels)
+    let mut launch = run
+        .voxels
+        .give(pass.launch(run.device))
         .input(&classified.node_class)
         .input(&volume.node_range)
         .input(&volume.levels)

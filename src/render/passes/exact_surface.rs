@@ -56,9 +56,9 @@ pub fn exact_surface(
         signature.extend(Counters::parameters(with_counters));
         signature
     })?;
-    let mut launch = pass
-        .launch(run.device)
-        .input(&volume.voxels)
+    let mut launch = run
+        .voxels
+        .give(pass.launch(run.device))
         .input(&classified.node_class)
         .input(&volume.levels)
         .input(&classified.cells)

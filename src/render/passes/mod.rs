@@ -18,15 +18,15 @@ use std::time::Instant;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::gpu::{
-    AnyBuffer, Buffer, Defines, Device, Element, Launch, Parameter, Pass, Timings, input, input_of,
-    output,
+    Buffer, Defines, Device, Element, Launch, Parameter, Pass, Timings, input, output,
 };
 
 use super::abi::VolumeGrid;
 use super::clip::DeviceClip;
 use super::gradient::DeviceGradient;
 use super::lanes::Lanes;
-use super::variant::{Variant, voxel_cl_name};
+use super::variant::Variant;
+use super::voxels::{DeviceVoxels, parameter};
 
 pub use adaptive_emission::adaptive_emission;
 pub use cast_emission::{DeviceTransfer, cast_emission};
@@ -83,6 +83,8 @@ pub struct Run<'a> {
     /// Work-items along x and y of a group; `None`: small square tiles of pixels.
     pub work_group: Option<[usize; 2]>,
     pub variant: Variant,
+    /// In the variant's storage.
+    pub voxels: &'a DeviceVoxels,
 }
 
 impl Run<'_> {
@@ -102,11 +104,9 @@ impl Run<'_> {
     }
 }
 
-/// The volume on the device.
+/// The volume on the device, but for its voxels.
 pub struct DeviceVolume {
     pub grid: VolumeGrid,
-    /// Of the variant's voxel type, x fastest.
-    pub voxels: AnyBuffer,
     /// Per octree level its nodes along x, y, z and its first node's offset.
     pub levels: Buffer<[u32; 4]>,
     /// Per octree node the range of its values.
@@ -116,7 +116,7 @@ pub struct DeviceVolume {
 impl DeviceVolume {
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.voxels.bytes() + self.levels.bytes() + self.node_range.bytes()
+        self.levels.bytes() + self.node_range.bytes()
     }
 }
 
@@ -147,7 +147,7 @@ impl Counters {
 }
 
 fn voxels(variant: Variant) -> Parameter {
-    input_of("voxels", voxel_cl_name(variant.voxel))
+    parameter(variant.storage, variant.voxel)
 }
 
 fn levels() -> Parameter {

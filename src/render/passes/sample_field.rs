@@ -27,8 +27,8 @@ pub fn sample_field(
             output::<u32>("steps"),
         ]
     })?;
-    pass.launch(run.device)
-        .input(&volume.voxels)
+    run.voxels
+        .give(pass.launch(run.device))
         .value(&volume.grid)
         .value(rays)
         .value(&step_mm)

@@ -38,7 +38,7 @@ pub fn surface_normal(
     })?;
     let mut launch = gradient.give(pass.launch(run.device));
     if gradient.reads_voxels() {
-        launch = launch.input(&volume.voxels);
+        launch = run.voxels.give(launch);
     }
     launch
         .input(&clip.planes)

@@ -6,7 +6,7 @@ use crate::render::passes::{Run, sample_field};
 use crate::render::rays::ray_grid;
 use crate::render::twins;
 use crate::render::variant::Variant;
-use crate::scene::Scene;
+use crate::scene::{SamplingMethod, Scene};
 
 use super::{Renderer, check_step};
 
@@ -37,6 +37,9 @@ impl Renderer<'_> {
     /// As [`Renderer::render`].
     pub fn sample_field(&mut self, scene: &Scene) -> Result<Sampled> {
         check_step(scene, self.volume)?;
+        let storage = scene.sampling.voxels;
+        storage.check(SamplingMethod::Fixed, scene.sampling.filter)?;
+        self.upload_voxels(storage)?;
         let mut timings = Timings::default();
         let mut run = Run {
             device: self.device,
@@ -45,6 +48,7 @@ impl Renderer<'_> {
             size: scene.size,
             work_group: self.work_group,
             variant: Variant::of(self.volume, self.octree, &scene.sampling, self.lanes),
+            voxels: self.voxels.held(self.device, self.volume, storage)?,
         };
         let rays = ray_grid(&scene.camera, scene.size, self.volume);
         let step_mm = twins::step_mm(&scene.sampling, self.volume) as f32;

@@ -49,7 +49,7 @@ pub use words::{GradientMethod, Mode, NonFiniteRule, Shading, Switch, View};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
-use crate::scene::{Quadrature, QuadratureMethod, SamplingMethod, Scene, TransferFile};
+use crate::scene::{Quadrature, QuadratureMethod, SamplingMethod, Scene, Storage, TransferFile};
 
 /// Everything that determines a picture, as far as it was said.
 #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
@@ -105,6 +105,8 @@ impl SceneOptions {
                 file.picture.quad = file.picture.quad.filter(of_method);
                 if method == SamplingMethod::Exact {
                     file = file.without_steps();
+                    let suits = |storage: &Storage| *storage != Storage::Filtered;
+                    file.sampling.voxels = file.sampling.voxels.filter(suits);
                     file.picture.homogeneity = None;
                     file.picture.homogeneity_rule = None;
                 }
@@ -147,6 +149,8 @@ impl SceneOptions {
             ))
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
         }
+        let sampling = self.sampling.sampling();
+        sampling.voxels.check(self.method(), sampling.filter)?;
         if let Some(choice) = self.picture.tf.take() {
             self.picture.tf = Some(TransferChoice::Written(choice.read()?));
         }

@@ -193,6 +193,7 @@ plain!(
     crate::scene::HomogeneityRule,
     crate::scene::Filter,
     crate::scene::SamplingMethod,
+    crate::scene::Storage,
     crate::scene::Traverse,
 );
 

@@ -4,7 +4,7 @@ use super::group::group;
 use super::numbers::StepVoxels;
 use super::words::Switch;
 use crate::error::Result;
-use crate::scene::{Filter, Sampling, SamplingMethod, Traverse};
+use crate::scene::{Filter, Sampling, SamplingMethod, Storage, Traverse};
 
 group! {
     /// How rays are followed through the volume.
@@ -41,6 +41,12 @@ group! {
         /// and nothing else [default: on]
         #[arg(long, value_name = "on|off")]
         probe: Switch,
+
+        /// How a device holds the voxels: buffer; image, read voxel by voxel, which never changes the
+        /// picture; or filtered, an image (a texture) whose own filter takes the samples of fixed
+        /// steps, on most GPUs with weights of eight bits [default: buffer]
+        #[arg(long, value_name = "buffer|image|filtered")]
+        voxels: Storage,
     }
 }
 
@@ -58,6 +64,7 @@ impl SamplingOptions {
             traverse: self.traverse.or(Some(default.traverse)),
             skip: self.skip.or(Some(default.skip.into())),
             probe: self.probe.or(Some(default.probe.into())),
+            voxels: self.voxels.or(Some(default.voxels)),
         })
     }
 
@@ -70,6 +77,7 @@ impl SamplingOptions {
             traverse: self.traverse.unwrap_or(default.traverse),
             skip: self.skip.map_or(default.skip, Switch::is_on),
             probe: self.probe.map_or(default.probe, Switch::is_on),
+            voxels: self.voxels.unwrap_or(default.voxels),
         }
     }
 }

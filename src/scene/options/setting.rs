@@ -59,7 +59,7 @@ impl Setting {
                 "setting '{name}': '{key}' says what is seen, not how its rays are followed"
             ))
             .hint(format!(
-                "a setting may say sampling, step, filter, traverse, skip, probe, {}",
+                "a setting may say sampling, step, filter, traverse, skip, probe, voxels, {}",
                 Self::KEYS.join(", ")
             ))),
         }

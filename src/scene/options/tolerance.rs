@@ -3,6 +3,7 @@
 use super::group::{Keys, group};
 use super::{ErrorBound, SceneOptions};
 use crate::error::{Error, Result};
+use crate::scene::Storage;
 
 group! {
     /// What decides how rays are followed where the user does not.
@@ -63,6 +64,12 @@ impl ToleranceOptions {
             ))
             .hint(format!("leave out {}, or 'max-error'", DECIDED.join(", "))));
         }
+        if scene.sampling.voxels == Some(Storage::Filtered) {
+            return Err(Error::usage(
+                "'max-error' and 'voxels' = filtered exclude each other: a bound may choose exact sampling, which solves the field from the voxels themselves",
+            )
+            .hint("leave one of both out, or say --voxels image"));
+        }
         bound.check(scene.mode())
     }
 }
@@ -120,9 +127,12 @@ mod tests {
             "filter = 'nearest'",
             "traverse = 'uniform'",
             "gradient = 'forward'",
+            "voxels = 'image'",
         ] {
             bound.check(&parse(text)).unwrap();
         }
+        let filtered = parse("mode = 'dvr'\nvoxels = 'filtered'");
+        assert!(bound.check(&filtered).is_err());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::plain::plain;
 use crate::scene::{
-    Filter, HomogeneityRule, QuadratureMethod, RefineMethod, SamplingMethod, Traverse,
+    Filter, HomogeneityRule, QuadratureMethod, RefineMethod, SamplingMethod, Storage, Traverse,
 };
 
 /// Gives an enum its names: `FromStr`, `Display`.
@@ -139,6 +139,7 @@ words!(QuadratureMethod, "a quadrature": Riemann = "riemann", Midpoint = "midpoi
 words!(HomogeneityRule, "a rule for homogeneous nodes": Optical = "optical", Range = "range");
 words!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
     Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
+words!(Storage, "a way to hold voxels": Buffer = "buffer", Image = "image", Filtered = "filtered");
 words!(SamplingMethod, "a sampling": Fixed = "fixed", Exact = "exact");
 
 plain!(Mode, Shading, GradientMethod, Switch, NonFiniteRule, View);

@@ -85,9 +85,15 @@ const KEYS_BESIDE: [&str; 4] = ["peer", "peer_setting", "cpu_ratio", "wall_ratio
 
 #[test]
 fn every_mode_is_timed_counted_and_judged_beside_sampling_alone_and_a_peer() {
-    let Some(device) = common::device_flag() else {
+    let Some(device) = common::device() else {
         return;
     };
+    let ways_to_hold = if common::has_images(&device).is_ok() {
+        3
+    } else {
+        1
+    };
+    let device = format!("--device {}", device.info().id);
     let place = Place::with_ball();
     place.write("black.sh", BLACK_PEER);
     let mut command = place.command(&format!(
@@ -137,8 +143,19 @@ fn every_mode_is_timed_counted_and_judged_beside_sampling_alone_and_a_peer() {
             );
         }
         let straight = row(&results, picture, "sampling alone", "straight rays");
+        assert_eq!(straight["setting"], "step 1, voxels in: buffer");
         assert_eq!(number(straight, "roofline_share"), 1.0);
         assert_eq!(straight["outside_cast_share"], Value::Null);
+        let sampling = rows(&results)
+            .iter()
+            .filter(|row| row["picture"] == picture && row["renderer"] == "sampling alone");
+        let sampling: Vec<&Value> = sampling.collect();
+        assert_eq!(sampling.len(), ways_to_hold);
+        assert!(
+            sampling
+                .iter()
+                .all(|row| row["samples"] == straight["samples"])
+        );
     }
     assert!(rows(&results).iter().all(|row| row["frames"] == 2.0));
     // Four times the rays take four times the samples; of the walk through cells that holds too.

@@ -282,6 +282,88 @@ fn every_variant_of_every_kernel_is_without_a_warning() {
     );
 }
 
+/// What clang says where a file does not become code for NVIDIA's GPUs, a ray a work-item.
+fn no_gpu_code(clang: &Path, file: &Path, build: &Build) -> Option<String> {
+    let mut command = Command::new(clang);
+    command
+        .args(["-x", "cl", "-target", "nvptx64-nvidia-nvcl", "-O1", "-S"])
+        .args(["-Xclang", "-finclude-default-header"])
+        .args(["-o", "/dev/null", "-I"])
+        .arg(kernels())
+        .args(build.variant.split_whitespace());
+    for (name, value) in &build.switches {
+        command.arg(format!("-D{name}={value}"));
+    }
+    let output = command.arg(file).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (!output.status.success()).then_some(text)
+}
+
+/// Whether clang can make code for NVIDIA's GPUs; says so where it cannot.
+fn knows_gpus(clang: &Path) -> bool {
+    let output = Command::new(clang).arg("-print-targets").output().unwrap();
+    let knows = String::from_utf8_lossy(&output.stdout).contains("nvptx64");
+    if !knows {
+        common::skip("clang was built without NVPTX");
+    }
+    knows
+}
+
+/// From buffers and, where a device filters, from images, all outputs wanted.
+#[test]
+fn every_pass_becomes_code_for_gpus() {
+    let Some(clang) = clang().filter(|clang| knows_gpus(clang)) else {
+        return;
+    };
+    let of_last = |path: &str, storage| {
+        let variant = variant(VoxelType::U8, Filter::Linear, storage, 8, false);
+        let switches = switches(&flatten(path).unwrap(), &variant);
+        let last = |(name, values): (String, Vec<String>)| {
+            let value = match name.as_str() {
+                "LANES" => "1".to_owned(),
+                _ => values.last().unwrap().clone(),
+            };
+            (name, value)
+        };
+        let switches = switches.into_iter().map(last).collect();
+        Build { variant, switches }
+    };
+    thread::scope(|scope| {
+        for path in files_in("pass/") {
+            let (clang, of_last) = (&clang, &of_last);
+            scope.spawn(move || {
+                for storage in [Storage::Buffer, Storage::Filtered] {
+                    let build = of_last(path, storage);
+                    let wrong = no_gpu_code(clang, &kernels().join(path), &build);
+                    assert!(wrong.is_none(), "{path}, {storage}: {}", wrong.unwrap());
+                }
+            });
+        }
+    });
+}
+
+/// The control: what only processors of one kind can do.
+#[test]
+fn what_gpus_cannot_do_does_not_become_code_for_them() {
+    let Some(clang) = clang().filter(|clang| knows_gpus(clang)) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wrong.cl");
+    let build = Build {
+        variant: String::new(),
+        switches: Vec::new(),
+    };
+    let refused = |body: &str| {
+        let text = format!("kernel void wrong(global float *v)\n{{\n{body}\n}}\n");
+        std::fs::write(&file, text).unwrap();
+        no_gpu_code(&clang, &file, &build)
+    };
+    assert_eq!(refused("    v[0] = 1.0f;"), None);
+    let text = refused("    v[0] = 1.0f; __builtin_ia32_pause();").unwrap();
+    assert!(text.contains("__builtin_ia32_pause"), "{text}");
+}
+
 #[test]
 fn the_switches_are_read_from_the_kernels() {
     let variant = variant(VoxelType::U8, Filter::Linear, Storage::Buffer, 8, false);

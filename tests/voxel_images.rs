@@ -19,10 +19,7 @@ use glam::DVec3;
 /// The device under test, if it has images.
 fn device() -> Option<Device> {
     let device = common::device()?;
-    let volume = volume_of([2, 2, 2], |x, _, _| x as u8);
-    let octree = common::octree(&volume);
-    let renderer = renderer(&device, &volume, &octree);
-    match renderer.check_storage(Storage::Filtered) {
+    match common::has_images(&device) {
         Ok(()) => Some(device),
         Err(error) => {
             common::skip(&error.to_string());

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::kept::{self, Kept, asked_for};
 use crate::output::write_bytes;
 
-use super::DeviceInfo;
+use super::{DeviceInfo, Parameter};
 
 /// Names the folder of built programs, or turns it off.
 const FOLDER: &str = "ANGIORAY_KERNEL_CACHE";
@@ -47,8 +47,15 @@ impl Binaries {
         }
     }
 
-    /// Where the program is kept that the device's compiler makes of `source` and `options`.
-    pub fn path(&self, device: &DeviceInfo, source: &str, options: &str) -> Option<PathBuf> {
+    /// Where the program is kept that the device's compiler makes of `source` and `options`, and whose
+    /// kernel has the arguments of `signature`.
+    pub fn path(
+        &self,
+        device: &DeviceInfo,
+        source: &str,
+        options: &str,
+        signature: &[Parameter],
+    ) -> Option<PathBuf> {
         let kept = self.0.as_ref()?;
         let mut hasher = blake3::Hasher::new();
         let DeviceInfo {
@@ -58,9 +65,16 @@ impl Binaries {
             version,
             ..
         } = device;
-        for part in [name, platform, driver, version, options, source] {
+        let mut add = |part: &str| {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part.as_bytes());
+        };
+        for part in [name, platform, driver, version, options, source] {
+            add(part);
+        }
+        for parameter in signature {
+            add(parameter.name);
+            add(&parameter.type_name);
         }
         Some(kept.path(&hasher))
     }

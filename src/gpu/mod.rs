@@ -8,6 +8,7 @@ pub mod loader;
 mod memory;
 mod pass;
 mod program;
+mod signature;
 mod source;
 mod timing;
 
@@ -15,8 +16,9 @@ pub use device::{Device, DeviceInfo, DeviceKind};
 pub use element::Element;
 pub use image::{Channel, Image};
 pub use memory::{AnyBuffer, Buffer};
-pub use pass::{Launch, Parameter, Pass, image, input, input_of, output, value};
+pub use pass::{Launch, Pass};
 pub use program::Defines;
+pub use signature::{Parameter, image, input, input_of, output, value};
 pub use source::{files, flatten};
 pub use timing::{PassTime, Timings};
 

@@ -1,59 +1,13 @@
 //! A pass: one kernel, its arguments checked by name, type and count when it is built.
 
 use bytemuck::bytes_of;
-use ocl::core::{
-    self, ArgVal, Event, Kernel, KernelArgInfo, KernelArgInfoResult, KernelInfo, KernelInfoResult,
-};
+use ocl::core::{self, ArgVal, Event, Kernel};
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
+use super::signature::{IMAGE, Parameter};
 use super::{AnyBuffer, Buffer, Defines, Device, Element, Image, Timings, device_error, program};
-
-/// One argument of a kernel, as its Rust function means it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Parameter {
-    name: &'static str,
-    /// As OpenCL tells it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
-    type_name: String,
-}
-
-/// A buffer that the pass reads.
-pub fn input<T: Element>(name: &'static str) -> Parameter {
-    input_of(name, T::CL_NAME)
-}
-
-/// A buffer that the pass reads, its element type known at run time.
-pub fn input_of(name: &'static str, cl_name: &str) -> Parameter {
-    Parameter {
-        name,
-        type_name: format!("{cl_name}*"),
-    }
-}
-
-/// A buffer that the pass writes.
-pub fn output<T: Element>(name: &'static str) -> Parameter {
-    input::<T>(name)
-}
-
-/// A three-dimensional image that the pass reads.
-pub fn image(name: &'static str) -> Parameter {
-    Parameter {
-        name,
-        type_name: IMAGE.to_owned(),
-    }
-}
-
-/// As OpenCL tells an image's type.
-const IMAGE: &str = "image3d_t";
-
-/// A number or struct handed over by value.
-pub fn value<T: Element>(name: &'static str) -> Parameter {
-    Parameter {
-        name,
-        type_name: T::CL_NAME.to_owned(),
-    }
-}
 
 /// A built kernel and its signature.
 pub struct Pass {
@@ -76,8 +30,8 @@ impl Pass {
         defines: &Defines,
         signature: Vec<Parameter>,
     ) -> Result<Self> {
-        let kernel = program::build(device, &format!("{folder}/{name}.cl"), name, defines)?;
-        check(&kernel, name, &signature)?;
+        let path = format!("{folder}/{name}.cl");
+        let kernel = program::build(device, &path, name, defines, &signature)?;
         Ok(Self {
             name,
             kernel,
@@ -102,44 +56,6 @@ impl Pass {
             failed: None,
         }
     }
-}
-
-/// Compares the kernel's own arguments with the signature.
-fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Result<()> {
-    let KernelInfoResult::NumArgs(count) = core::get_kernel_info(kernel, KernelInfo::NumArgs)
-        .map_err(|e| device_error("count a kernel's arguments", &e))?
-    else {
-        return Err(Error::failed(format!(
-            "the pass {name} does not tell its arguments"
-        )));
-    };
-    if count as usize != signature.len() {
-        return Err(Error::failed(format!(
-            "the pass {name} takes {count} arguments, its Rust function gives {}",
-            signature.len()
-        )));
-    }
-    for (index, parameter) in signature.iter().enumerate() {
-        let ask = |what| {
-            core::get_kernel_arg_info(kernel, index as u32, what, None)
-                .map_err(|e| device_error("ask for a kernel's arguments", &e))
-        };
-        let (KernelArgInfoResult::Name(name_there), KernelArgInfoResult::TypeName(type_there)) =
-            (ask(KernelArgInfo::Name)?, ask(KernelArgInfo::TypeName)?)
-        else {
-            return Err(Error::failed(format!(
-                "the pass {name} does not tell its arguments"
-            )));
-        };
-        let type_there = type_there.trim_start_matches("struct ").replace(' ', "");
-        if name_there != parameter.name || type_there != parameter.type_name {
-            return Err(Error::failed(format!(
-                "argument {index} of the pass {name} is '{type_there} {name_there}', its Rust function gives '{} {}'",
-                parameter.type_name, parameter.name
-            )));
-        }
-    }
-    Ok(())
 }
 
 /// Arguments being given to a pass; [`Launch::run`] starts it.

@@ -6,6 +6,7 @@ use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 
 use crate::error::{Error, Result};
 
+use super::signature::{self, Parameter};
 use super::{Device, binary, device_error, source};
 
 /// The constants of a built program, `-D NAME=VALUE`, in the order given. Two equal lists are the
@@ -35,14 +36,25 @@ impl Defines {
     }
 }
 
-/// Builds `kernels/<path>`, or takes it from where built programs are kept, and takes its kernel `name`.
+/// Builds `kernels/<path>` and takes its kernel `name`, which has the arguments of `signature`; or takes it
+/// from where built programs are kept.
 ///
 /// # Errors
-/// The source does not build on this device; the message holds the compiler's first lines.
-pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) -> Result<Kernel> {
+/// The source does not build on this device, then the message holds the compiler's first lines; or its
+/// arguments are others.
+pub(super) fn build(
+    device: &Device,
+    path: &str,
+    name: &str,
+    defines: &Defines,
+    signature: &[Parameter],
+) -> Result<Kernel> {
     let source = source::flatten(path)?;
     let options = defines.options();
-    let kept = device.binaries().path(device.info(), &source, &options);
+    // A kept program is one whose arguments were compared with this signature: it does not tell them.
+    let kept = device
+        .binaries()
+        .path(device.info(), &source, &options, signature);
     let options =
         CString::new(options).map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
     if let Some(kernel) = kept
@@ -54,30 +66,36 @@ pub(super) fn build(device: &Device, path: &str, name: &str, defines: &Defines) 
     }
     let program = device.program(&source)?;
     if let Err(error) = compile(device, &program, &options) {
-        let log =
-            core::get_program_build_info(&program, device.device_id(), ProgramBuildInfo::BuildLog)
-                .map(|log| log.to_string())
-                .unwrap_or_else(|_| error.to_string());
-        let first_lines: Vec<&str> = log
-            .lines()
-            .filter(|l| !l.trim().is_empty())
-            .take(12)
-            .collect();
-        return Err(Error::failed(format!(
-            "kernels/{path} does not build on '{}': {}",
-            device.info().name,
-            first_lines.join("; ")
-        )));
+        return Err(not_built(device, &program, path, &error));
     }
+    let kernel = core::create_kernel(&program, name)
+        .map_err(|e| device_error(&format!("take the kernel {name}"), &e))?;
+    signature::check(&kernel, name, signature)?;
     if let Some(path) = kept {
         binary::write(&path, &program);
     }
-    core::create_kernel(&program, name)
-        .map_err(|e| device_error(&format!("take the kernel {name}"), &e))
+    Ok(kernel)
 }
 
 fn compile(device: &Device, program: &Program, options: &CString) -> core::Result<()> {
     core::build_program(program, Some(&[device.device_id()]), options, None, None)
+}
+
+/// The compiler's first lines.
+fn not_built(device: &Device, program: &Program, path: &str, error: &core::Error) -> Error {
+    let log = core::get_program_build_info(program, device.device_id(), ProgramBuildInfo::BuildLog)
+        .map(|log| log.to_string())
+        .unwrap_or_else(|_| error.to_string());
+    let first_lines: Vec<&str> = log
+        .lines()
+        .filter(|l| !l.trim().is_empty())
+        .take(12)
+        .collect();
+    Error::failed(format!(
+        "kernels/{path} does not build on '{}': {}",
+        device.info().name,
+        first_lines.join("; ")
+    ))
 }
 
 /// The kernel `name` of a built program; nothing where the driver does not take it.

@@ -12,7 +12,7 @@ use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Camera, Gradient, Lens, Light, Picture, Sampling, SamplingMethod, Scene, Tone,
+    Camera, Gradient, Lens, Light, Picture, Sampling, SamplingMethod, Scene, Storage, Tone,
 };
 use angioray::volume::{Geometry, NonFinite, ReadOptions, Rescale, Volume, Voxels, read};
 use glam::DVec3;
@@ -28,6 +28,14 @@ pub fn device() -> Option<Device> {
             None
         }
     }
+}
+
+/// Whether a device can hold volumes of 8 bits in images; else why not.
+pub fn has_images(device: &Device) -> angioray::error::Result<()> {
+    let volume = volume_of([2, 2, 2], |x, _, _| x as u8);
+    let octree = octree(&volume);
+    let renderer = Renderer::new(device, &volume, &octree, Options::default())?;
+    renderer.check_storage(Storage::Image)
 }
 
 /// The [`device`] under test as a flag of the program.

@@ -12,7 +12,7 @@ use crate::measure::{
     Counts, FrameTime, Peer, PeerScene, PeerTime, Readiness, Times, judged_planes, rounds, time,
 };
 use crate::render::Renderer;
-use crate::scene::{Sampling, SamplingMethod, Scene};
+use crate::scene::{Sampling, SamplingMethod, Scene, Storage};
 
 /// What one frame took, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -29,7 +29,7 @@ pub struct Taken {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Runner {
     Ours,
-    /// Sampling alone: the most samples that a cast could take.
+    /// Sampling alone: the most samples that a cast could take; from a buffer first, then from images.
     Sampling,
     /// A program, by its name and version.
     Peer(String),
@@ -127,6 +127,27 @@ enum Turn<'a> {
     Peer(PeerScene, &'a Scene),
 }
 
+/// What sampling alone samples: from a buffer first, by which casts are judged, then from images where the
+/// device has them.
+fn straight_rays(contenders: &[Contender], renderer: &Renderer) -> Vec<Scene> {
+    let Some(first) = contenders.first() else {
+        return Vec::new();
+    };
+    let held = Storage::ALL
+        .into_iter()
+        .filter(|&voxels| renderer.check_storage(voxels).is_ok());
+    let straight = held.map(|voxels| Scene {
+        sampling: Sampling {
+            method: SamplingMethod::Fixed,
+            step_voxels: 1.0,
+            voxels,
+            ..Sampling::default()
+        },
+        ..first.scene.clone()
+    });
+    straight.collect()
+}
+
 /// All rows: of the contenders, of sampling alone, of the peer.
 pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
     let Entrants {
@@ -160,19 +181,12 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
             turns.push(Turn::Peer(scene, &first.scene));
         }
     }
-    let straight = contenders.first().map(|one| Scene {
-        sampling: Sampling {
-            method: SamplingMethod::Fixed,
-            step_voxels: 1.0,
-            ..Sampling::default()
-        },
-        ..one.scene.clone()
-    });
-    if let Some(scene) = &straight {
+    let straight = straight_rays(contenders, &renderer);
+    for scene in &straight {
         rows.push(Raced {
             runner: Runner::Sampling,
             look: None,
-            setting: "step 1, nothing skipped".into(),
+            setting: format!("step 1, voxels in: {}", scene.sampling.voxels),
             samples: Some(renderer.sample_field(scene)?.samples()),
             wrong: None,
             note: None,

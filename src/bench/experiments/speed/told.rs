@@ -10,11 +10,17 @@ use crate::report::figure;
 /// Of one picture size: what the device can sample, and the ratios to a peer.
 pub fn race(place: &str, rows: &[Raced]) -> Vec<String> {
     let mut told = Vec::new();
-    let most = rows.iter().find(|row| row.runner == Runner::Sampling);
-    if let Some(rate) = most.and_then(Raced::samples_per_s) {
+    let sampling = rows.iter().filter(|row| row.runner == Runner::Sampling);
+    let rates: Vec<String> = sampling
+        .filter_map(|row| {
+            let rate = figure(1e-6 * row.samples_per_s()?);
+            Some(format!("{rate} ({})", row.setting))
+        })
+        .collect();
+    if !rates.is_empty() {
         told.push(format!(
-            "{place}: sampling alone takes {} million samples a second",
-            figure(1e-6 * rate)
+            "{place}: sampling alone takes so many million samples a second: {}",
+            rates.join(", ")
         ));
     }
     let ratio = |row: &Raced| {
@@ -59,7 +65,8 @@ pub fn conduct(bench: &Bench) -> Vec<String> {
         ),
         "samples are those of a frame from the middle of the camera's way, of exact ways the cells that \
          were walked; their rate is over the least time of the cast alone, and sampling alone follows the \
-         same camera's rays straight through the volume, one sample a voxel"
+         same camera's rays straight through the volume, one sample a voxel; shares of it are of its rate \
+         from a buffer"
             .into(),
         format!(
             "errors are against the double-precision reference in {} pixels drawn at random of the \

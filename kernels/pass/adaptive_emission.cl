@@ -236,7 +236,7 @@ static inline void gather_cells(VOXELS voxels, const Sight *sight, Gathered *gat
 
 // In the lanes of `alive`.
 static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gathered, const global uchar *node_class,
-                                const global uint4 *levels, const global uint *cells, Ray ray, Interval interval, Mask alive,
+                                const global uint4 *levels, const global ulong *cells, Ray ray, Interval interval, Mask alive,
                                 Ints *samples, Ints *nodes_tested)
 {
     VolumeGrid volume = sight->volume;
@@ -310,7 +310,7 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
     }
 }
 
-kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                               const global float *knot_values, const global float4 *knot_colors, const global float4 *knot_sums,
                               const global float4 *clip_planes, uint clip_count,
 #if SHADED && GRADIENT == GRADIENT_PRECOMPUTED

@@ -157,7 +157,7 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
 #if HOMOGENEOUS
                                 const global float *node_average,
 #endif
-                                const global uint4 *levels, const global uint *cells, Ray ray, Interval interval, Mask alive,
+                                const global uint4 *levels, const global ulong *cells, Ray ray, Interval interval, Mask alive,
                                 Ints *samples, Ints *nodes_tested)
 {
     const Lattice *lattice = &sight->lattice;
@@ -225,7 +225,7 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
     }
 }
 
-kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                           const global float *knot_values, const global float4 *knot_colors,
 #if QUADRATURE == QUADRATURE_PREINTEGRATED
                           const global float4 *knot_sums,

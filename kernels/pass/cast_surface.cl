@@ -78,7 +78,7 @@ static inline void look(VOXELS voxels, const Sight *sight, Search *search, Mask 
 
 // Looks along rays until each has met the surface or its end, in the lanes of `alive`.
 static inline void look_along(VOXELS voxels, const Sight *sight, Search *search, const global uchar *node_class, const global uint4 *levels,
-                              const global uint *cells, Ray ray, Interval interval, Mask alive, Ints *nodes_tested)
+                              const global ulong *cells, Ray ray, Interval interval, Mask alive, Ints *nodes_tested)
 {
     const Lattice *lattice = &sight->lattice;
     VolumeGrid volume = sight->volume;
@@ -128,7 +128,7 @@ static inline void look_along(VOXELS voxels, const Sight *sight, Search *search,
     }
 }
 
-kernel void cast_surface(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void cast_surface(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                          const global float4 *clip_planes, uint clip_count,
                          VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                          global float *hit_mm, global uint *kind

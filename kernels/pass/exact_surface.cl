@@ -10,7 +10,7 @@
 #include "lib/clip.clh"
 #include "lib/crossing.clh"
 
-kernel void exact_surface(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void exact_surface(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                           const global float4 *clip_planes, uint clip_count,
                           VolumeGrid volume, RayGrid rays, SurfaceCast cast,
                           global float *hit_mm, global uint *kind

@@ -23,7 +23,7 @@ static inline Pair exactly(Floats number)
     return pair;
 }
 
-kernel void aimed_rays(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global uint *cells,
+kernel void aimed_rays(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                        VolumeGrid volume, SurfaceCast cast, uint count, uint width,
                        const global float4 *origins, const global float4 *dirs,
                        global float *hit, global uint *kind, global uint *certificate)

@@ -26,6 +26,7 @@ elements! {
     u16 => "ushort",
     i16 => "short",
     u32 => "uint",
+    u64 => "ulong",
     f32 => "float",
     [f32; 2] => "float2",
     [f32; 4] => "float4",

@@ -1,6 +1,6 @@
 //! Which cells a ray must look at: a bit each, once per iso value or transfer function.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
@@ -20,14 +20,14 @@ pub fn crossed(
     classes: &[u8],
     iso: f32,
     iso_error: f32,
-) -> Vec<u32> {
+) -> Vec<u64> {
     visited(volume, octree, classes, |range| {
         may_cross(range, iso, iso_error)
     })
 }
 
 /// The cells in which some value absorbs light. `classes` are those of the octree's nodes.
-pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots) -> Vec<u32> {
+pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots) -> Vec<u64> {
     let ranges = ValueRanges::new(knots);
     let [from, to] = knots.absorbing();
     visited(volume, octree, classes, |[least, most]| {
@@ -35,17 +35,27 @@ pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots
     })
 }
 
-/// A bit per cell, x fastest, the lowest bit of a word first: whether the range of its corners matters.
-/// Only leaves of [`Class::Visit`] hold such cells.
+/// Cells along each axis of a brick, whose bits are a word: the rays of a tile touch several of them in
+/// each slice of cells.
+const BRICK: usize = 4;
+
+/// A cell's word and its bit in that, of so many bricks along each axis.
+fn place([x, y, z]: [usize; 3], [bricks_x, bricks_y, _]: [usize; 3]) -> (usize, usize) {
+    let word = (z / BRICK * bricks_y + y / BRICK) * bricks_x + x / BRICK;
+    (word, (z % BRICK * BRICK + y % BRICK) * BRICK + x % BRICK)
+}
+
+/// A bit per cell, a word per brick, both x fastest: whether the range of its corners matters. Only leaves of [`Class::Visit`] hold such cells.
 fn visited(
     volume: &Volume,
     octree: &Octree,
     classes: &[u8],
     matters: impl Fn([f32; 2]) -> bool + Sync,
-) -> Vec<u32> {
+) -> Vec<u64> {
     let cells = volume.dims().cells().map(|n| n as usize);
-    let count: usize = cells.iter().product();
-    let words: Vec<AtomicU32> = (0..count.div_ceil(32)).map(|_| AtomicU32::new(0)).collect();
+    let bricks = cells.map(|n| n.div_ceil(BRICK));
+    let count: usize = bricks.iter().product();
+    let words: Vec<AtomicU64> = (0..count).map(|_| AtomicU64::new(0)).collect();
     let leaf = octree.leaf().edge() as usize;
     let leaves = octree.levels()[0];
     let [leaves_x, leaves_y, _] = leaves.size.map(|n| n as usize);
@@ -72,15 +82,15 @@ fn visited(
                         let range = join(join(a, b), join(c, d)).map(Into::<f64>::into);
                         let [least, most] = range;
                         if matters([least as f32, most as f32]) {
-                            let cell = (z * cells[1] + y) * cells[0] + x;
-                            words[cell / 32].fetch_or(1 << (cell % 32), Ordering::Relaxed);
+                            let (word, bit) = place([x, y, z], bricks);
+                            words[word].fetch_or(1 << bit, Ordering::Relaxed);
                         }
                     }
                 }
             }
         });
     });
-    words.into_iter().map(AtomicU32::into_inner).collect()
+    words.into_iter().map(AtomicU64::into_inner).collect()
 }
 
 /// The least and the greatest of each two voxels side by side along x, for the lines of voxels that the
@@ -148,10 +158,11 @@ mod tests {
     }
 
     /// How many cells' bits differ from `matters`, asked with all values at a cell's corners.
-    fn differing(volume: &Volume, bits: &[u32], matters: impl Fn(&[f64]) -> bool) -> usize {
+    fn differing(volume: &Volume, bits: &[u64], matters: impl Fn(&[f64]) -> bool) -> usize {
         let [nx, ny, nz] = volume.dims().array().map(|n| n as usize);
         let [cx, cy, cz] = volume.dims().cells().map(|n| n as usize);
-        assert_eq!(bits.len(), (cx * cy * cz).div_ceil(32));
+        let bricks = [cx, cy, cz].map(|n| n.div_ceil(BRICK));
+        assert_eq!(bits.len(), bricks.iter().product::<usize>());
         let differs = |cell: usize| {
             let (x, y, z) = (cell % cx, cell / cx % cy, cell / (cx * cy));
             let corners: Vec<f64> = (0..8)
@@ -161,7 +172,8 @@ mod tests {
                     volume.voxels().stored((z * ny + y) * nx + x)
                 })
                 .collect();
-            (bits[cell / 32] >> (cell % 32) & 1 == 1) != matters(&corners)
+            let (word, bit) = place([x, y, z], bricks);
+            (bits[word] >> bit & 1 == 1) != matters(&corners)
         };
         (0..cx * cy * cz).filter(|&cell| differs(cell)).count()
     }

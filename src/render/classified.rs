@@ -63,7 +63,7 @@ impl Criterion {
     }
 
     /// The cells that matter, a bit each; none where nothing is led past them one by one.
-    fn cells(&self, volume: &Volume, octree: &Octree, classes: &[u8]) -> Vec<u32> {
+    fn cells(&self, volume: &Volume, octree: &Octree, classes: &[u8]) -> Vec<u64> {
         match self {
             Self::Iso { iso, iso_error } => {
                 cells::crossed(volume, octree, classes, *iso, *iso_error)
@@ -113,7 +113,7 @@ pub struct Classified {
     pub node_class: Buffer<u8>,
     /// A bit per cell that matters, where rays are led past the others together: with the linear filter
     /// and where space is skipped by distance. Else a single word.
-    pub cells: Buffer<u32>,
+    pub cells: Buffer<u64>,
 }
 
 impl Classified {

@@ -142,7 +142,7 @@ impl<'a> RayCaster<'a> {
                 input_of("voxels", voxel_cl_name(variant.voxel)),
                 input::<u8>("node_class"),
                 input::<[u32; 4]>("levels"),
-                input::<u32>("cells"),
+                input::<u64>("cells"),
                 value::<VolumeGrid>("volume"),
                 value::<SurfaceCast>("cast"),
                 value::<u32>("count"),

@@ -40,7 +40,7 @@ pub fn adaptive_emission(
                 voxels(variant),
                 input::<u8>("node_class"),
                 levels(),
-                input::<u32>("cells"),
+                input::<u64>("cells"),
                 input::<f32>("knot_values"),
                 input::<[f32; 4]>("knot_colors"),
                 input::<[f32; 4]>("knot_sums"),

@@ -36,7 +36,7 @@ pub fn cast_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
-            input::<u32>("cells"),
+            input::<u64>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),

@@ -38,7 +38,7 @@ pub fn exact_surface(
             voxels(variant),
             input::<u8>("node_class"),
             levels(),
-            input::<u32>("cells"),
+            input::<u64>("cells"),
             DeviceClip::planes_parameter(),
             DeviceClip::count_parameter(),
             value::<VolumeGrid>("volume"),

@@ -12,7 +12,7 @@ use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
     Emission, Homogeneity, HomogeneityRule, Knot, Phong, Picture, Quadrature, QuadratureMethod,
-    Rgb, TransferFile, TransferFunction,
+    Refine, Rgb, TransferFile, TransferFunction,
 };
 use angioray::volume::{PhantomKind, PhantomSpec, ReadOptions, Volume, phantom, read};
 use common::{hash, volume_of};
@@ -278,7 +278,7 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
     let volume = volume_of([70, 80, 90], |x, y, z| (255.0 * hash(x, y, z)) as u8);
     let octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let mut uploaded = |preset: &str| {
+    let uploaded = |renderer: &mut Renderer, preset: &str| {
         let file = TransferFile::named(preset).unwrap();
         let transfer = file.transfer_function(volume.range()).unwrap();
         let scene = common::scene(&volume, 8, Picture::Emission(Emission::of(transfer)));
@@ -290,7 +290,8 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
         rendering.uploaded_bytes
     };
     let voxels = volume.voxels().bytes().len() as u64;
-    let (first, second) = (uploaded("3dra"), uploaded("mra"));
+    let first = uploaded(&mut renderer, "3dra");
+    let second = uploaded(&mut renderer, "mra");
     assert!(first > voxels, "{first}");
     // A byte a node, a bit a cell, and the knots.
     let cells: u64 = volume.dims().cells().map(u64::from).iter().product();
@@ -299,6 +300,31 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
         (least..least + 10_000).contains(&second) && second < voxels / 5,
         "{second}"
     );
-    // And nothing again for the same one.
-    assert!(uploaded("mra") < 10_000);
+    // And nothing again for the same one, nor for the one before it, until they are forgotten.
+    for preset in ["mra", "3dra", "mra"] {
+        assert!(uploaded(&mut renderer, preset) < 10_000, "{preset}");
+    }
+    renderer.forget_classes();
+    assert!(uploaded(&mut renderer, "mra") > least);
+    // The oldest of many is forgotten too: its memory is another's.
+    let held = |renderer: &mut Renderer, iso: f64| {
+        let surface = Picture::Surface {
+            iso,
+            caps: true,
+            refine: Refine::default(),
+            color: Rgb([1.0; 3]),
+            phong: None,
+        };
+        let scene = common::scene(&volume, 8, surface);
+        let rendering = renderer.render(&scene, Wanted::default()).unwrap();
+        (rendering.device_bytes, rendering.classify_ms > 0.0)
+    };
+    let bytes: Vec<u64> = (0..12)
+        .map(|n| held(&mut renderer, 20.5 + f64::from(n)).0)
+        .collect();
+    assert!(bytes[3] > bytes[0] && bytes[8] == bytes[11], "{bytes:?}");
+    assert_eq!(
+        [11, 0].map(|n| held(&mut renderer, 20.5 + f64::from(n)).1),
+        [false, true]
+    );
 }

@@ -117,9 +117,7 @@ pub struct Classified {
 }
 
 impl Classified {
-    /// # Errors
-    /// The device has no room.
-    pub fn upload(
+    fn upload(
         device: &Device,
         volume: &Volume,
         octree: &Octree,
@@ -146,14 +144,57 @@ impl Classified {
     }
 
     /// Whether it holds for the scene too.
-    pub fn serves(&self, scene: &Scene, criterion: &Criterion) -> bool {
+    fn serves(&self, scene: &Scene, criterion: &Criterion) -> bool {
         self.criterion == *criterion
             && self.traverse == scene.sampling.traverse
             && self.filter == scene.sampling.filter
     }
 
+    fn bytes(&self) -> u64 {
+        self.node_class.bytes() + self.cells.bytes()
+    }
+}
+
+/// So many are kept: enough for scenes that take turns, such as those of a benchmark.
+const MOST_KEPT: usize = 6;
+
+/// What was found for the last few criteria, the latest last.
+#[derive(Default)]
+pub struct RecentlyClassified(Vec<Classified>);
+
+impl RecentlyClassified {
+    /// What holds for the scene, and whether it had to be found.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn of(
+        &mut self,
+        device: &Device,
+        volume: &Volume,
+        octree: &Octree,
+        scene: &Scene,
+        criterion: Criterion,
+    ) -> Result<(&Classified, bool)> {
+        let there = self.0.iter().position(|one| one.serves(scene, &criterion));
+        let latest = match there {
+            Some(n) => self.0.remove(n),
+            None => {
+                if self.0.len() == MOST_KEPT {
+                    self.0.remove(0);
+                }
+                Classified::upload(device, volume, octree, scene, criterion)?
+            }
+        };
+        self.0.push(latest);
+        Ok((&self.0[self.0.len() - 1], there.is_none()))
+    }
+
+    pub fn forget(&mut self) {
+        self.0.clear();
+    }
+
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.node_class.bytes() + self.cells.bytes()
+        self.0.iter().map(Classified::bytes).sum()
     }
 }

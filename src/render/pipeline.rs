@@ -14,7 +14,7 @@ use crate::octree::Octree;
 use crate::scene::{Picture, Sampling, Scene, Storage};
 use crate::volume::Volume;
 
-use super::classified::{Classified, Criterion};
+use super::classified::{Criterion, RecentlyClassified};
 use super::clip::DeviceClip;
 use super::emission::emission;
 use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
@@ -45,8 +45,7 @@ pub struct Renderer<'a> {
     voxels: HeldVoxels,
     /// Those of the last picture that needed some.
     directions: Option<DeviceDirections>,
-    /// For the last picture.
-    classified: Option<Classified>,
+    classified: RecentlyClassified,
     built: Built,
     work_group: Option<[usize; 2]>,
     lanes: Lanes,
@@ -109,7 +108,7 @@ impl<'a> Renderer<'a> {
             uploaded,
             voxels: HeldVoxels::default(),
             directions: None,
-            classified: None,
+            classified: RecentlyClassified::default(),
             built: Built::default(),
             work_group: options.work_group,
             lanes: options.lanes.unwrap_or_else(|| Lanes::of(device.info())),
@@ -129,6 +128,12 @@ impl<'a> Renderer<'a> {
     /// The device has no images, none so large, or none of the voxels' type.
     pub fn check_storage(&self, storage: Storage) -> Result<()> {
         DeviceVoxels::check(self.device, self.volume, storage)
+    }
+
+    /// Forgets which nodes and cells matter: the next picture finds it anew, as if its iso value or transfer
+    /// function were new.
+    pub fn forget_classes(&mut self) {
+        self.classified.forget();
     }
 
     /// Uploads the voxels as they are to be held, unless they are there; this is upload time.
@@ -179,19 +184,15 @@ impl<'a> Renderer<'a> {
         check_room(self.device, scene.size, wanted, held_bytes)?;
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, self.volume, self.octree);
-        let known = self.classified.take();
-        let known = known.filter(|known| known.serves(scene, &criterion));
-        let is_new = known.is_none();
-        let classified = match known {
-            Some(known) => known,
-            None => Classified::upload(self.device, self.volume, self.octree, scene, criterion)?,
-        };
+        let (device, volume, octree) = (self.device, self.volume, self.octree);
+        let (classified, is_new) = self
+            .classified
+            .of(device, volume, octree, scene, criterion)?;
         let classify_ms = if is_new {
             start.elapsed().as_secs_f64() * 1e3
         } else {
             0.0
         };
-        let classified = &*self.classified.insert(classified);
         let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
         let mut run = Run {
@@ -254,7 +255,10 @@ impl<'a> Renderer<'a> {
                 + (self.device.uploaded_bytes() - uploaded_before),
             render_ms,
             gradients: directions.map(|directions| directions.figures),
-            device_bytes: held_bytes + classified.bytes() + clip.planes.bytes() + planes.bytes(),
+            device_bytes: held_bytes
+                + self.classified.bytes()
+                + clip.planes.bytes()
+                + planes.bytes(),
         })
     }
 }

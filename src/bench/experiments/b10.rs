@@ -135,6 +135,7 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Vec<Changed>> {
             let mut uploaded_bytes = 0;
             let rounds = bench.times_of(&[()], repeats(bench), |(), round| {
                 let scene = &scenes[round % scenes.len()];
+                renderer.forget_classes();
                 let rendering = renderer.render(scene, Wanted::default())?;
                 uploaded_bytes = rendering.uploaded_bytes.max(uploaded_bytes);
                 Ok(rendering.classify_ms)

@@ -68,21 +68,28 @@ struct Verdict {
     unused: BTreeSet<String>,
 }
 
-fn lint(clang: &Path, file: &Path, build: &Build) -> Verdict {
+/// Whether clang takes a build of a file, and what it says.
+fn compile(clang: &Path, file: &Path, build: &Build, options: &[String]) -> (bool, String) {
     let mut command = Command::new(clang);
     command
-        .args(["-x", "cl", "-fsyntax-only"])
-        .args(["-Xclang", "-finclude-default-header"])
-        .args(["-Wall", "-Wextra", "-Wundef", "-Werror"])
-        .args(UNUSED.map(|warning| format!("-Wno-error={warning}")))
-        .arg("-I")
+        .args(["-x", "cl", "-Xclang", "-finclude-default-header", "-I"])
         .arg(kernels())
+        .args(options)
         .args(build.variant.split_whitespace());
     for (name, value) in &build.switches {
         command.arg(format!("-D{name}={value}"));
     }
     let output = command.arg(file).output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.success(), text)
+}
+
+fn lint(clang: &Path, file: &Path, build: &Build) -> Verdict {
+    let mut options: Vec<String> = ["-fsyntax-only", "-Wall", "-Wextra", "-Wundef", "-Werror"]
+        .map(str::to_owned)
+        .to_vec();
+    options.extend(UNUSED.map(|warning| format!("-Wno-error={warning}")));
+    let (taken, text) = compile(clang, file, build, &options);
     let unused = text
         .lines()
         .filter(|line| {
@@ -93,7 +100,7 @@ fn lint(clang: &Path, file: &Path, build: &Build) -> Verdict {
         .map(str::to_owned)
         .collect();
     Verdict {
-        complaint: (!output.status.success()).then_some(text),
+        complaint: (!taken).then_some(text),
         unused,
     }
 }
@@ -284,19 +291,16 @@ fn every_variant_of_every_kernel_is_without_a_warning() {
 
 /// What clang says where a file does not become code for NVIDIA's GPUs, a ray a work-item.
 fn no_gpu_code(clang: &Path, file: &Path, build: &Build) -> Option<String> {
-    let mut command = Command::new(clang);
-    command
-        .args(["-x", "cl", "-target", "nvptx64-nvidia-nvcl", "-O1", "-S"])
-        .args(["-Xclang", "-finclude-default-header"])
-        .args(["-o", "/dev/null", "-I"])
-        .arg(kernels())
-        .args(build.variant.split_whitespace());
-    for (name, value) in &build.switches {
-        command.arg(format!("-D{name}={value}"));
-    }
-    let output = command.arg(file).output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    (!output.status.success()).then_some(text)
+    let options = [
+        "-target",
+        "nvptx64-nvidia-nvcl",
+        "-O1",
+        "-S",
+        "-o",
+        "/dev/null",
+    ];
+    let (taken, text) = compile(clang, file, build, &options.map(str::to_owned));
+    (!taken).then_some(text)
 }
 
 /// Whether clang can make code for NVIDIA's GPUs; says so where it cannot.

@@ -37,7 +37,7 @@ pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots
 
 /// Cells along each axis of a brick, whose bits are a word: the rays of a tile touch several of them in
 /// each slice of cells.
-const BRICK: usize = 4;
+pub const BRICK: usize = 4;
 
 /// A cell's word and its bit in that, of so many bricks along each axis.
 fn place([x, y, z]: [usize; 3], [bricks_x, bricks_y, _]: [usize; 3]) -> (usize, usize) {
@@ -45,7 +45,8 @@ fn place([x, y, z]: [usize; 3], [bricks_x, bricks_y, _]: [usize; 3]) -> (usize, 
     (word, (z % BRICK * BRICK + y % BRICK) * BRICK + x % BRICK)
 }
 
-/// A bit per cell, a word per brick, both x fastest: whether the range of its corners matters. Only leaves of [`Class::Visit`] hold such cells.
+/// A bit per cell, a word per brick, both x fastest: whether the range of its corners matters. Only leaves
+/// of [`Class::Visit`] hold such cells.
 fn visited(
     volume: &Volume,
     octree: &Octree,

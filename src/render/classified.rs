@@ -155,10 +155,8 @@ impl Classified {
     }
 }
 
-/// So many are kept: enough for scenes that take turns, such as those of a benchmark.
-const MOST_KEPT: usize = 6;
-
-/// What was found for the last few criteria, the latest last.
+/// What was found for the last few criteria, the latest last: for scenes that take turns, such as those of
+/// a benchmark. The latest alone, or as many as together take half of the voxels' memory at most.
 #[derive(Default)]
 pub struct RecentlyClassified(Vec<Classified>);
 
@@ -178,14 +176,12 @@ impl RecentlyClassified {
         let there = self.0.iter().position(|one| one.serves(scene, &criterion));
         let latest = match there {
             Some(n) => self.0.remove(n),
-            None => {
-                if self.0.len() == MOST_KEPT {
-                    self.0.remove(0);
-                }
-                Classified::upload(device, volume, octree, scene, criterion)?
-            }
+            None => Classified::upload(device, volume, octree, scene, criterion)?,
         };
         self.0.push(latest);
+        while self.0.len() > 1 && self.bytes() > volume.voxels().bytes().len() as u64 / 2 {
+            self.0.remove(0);
+        }
         Ok((&self.0[self.0.len() - 1], there.is_none()))
     }
 

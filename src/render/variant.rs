@@ -9,6 +9,7 @@ use crate::scene::{
 };
 use crate::volume::{Volume, VoxelType};
 
+use super::cells;
 use super::classify::Class;
 use super::lanes::Lanes;
 use super::medium;
@@ -171,6 +172,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("BRICK", cells::BRICK as u32),
     ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("TRANSFER_MOST_KNOTS", medium::MOST_KNOTS),

@@ -1,6 +1,7 @@
 //! The one error type: a sentence for the user, an optional hint, and the exit code it leads to.
 
 use std::fmt;
+use std::io;
 use std::path::Path;
 
 pub type Result<T> = std::result::Result<T, Error>;
@@ -8,24 +9,32 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Whose fault it is; decides the process's exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The job failed: unreadable input, unwritable output, device failure. Exit code 1.
+    /// The job failed for a reason that has no code of its own, or some of a batch did. Exit code 1.
     Failed,
     /// The request makes no sense: flags, scene file, values out of their domain. Exit code 2.
     Usage,
     /// No usable OpenCL device. Exit code 3.
     NoDevice,
+    /// An input is unusable or not there: trying again is useless. Exit code 65 (`EX_DATAERR` of
+    /// sysexits.h).
+    Input,
+    /// An output, the device, the disk or memory failed: trying again may help. Exit code 74
+    /// (`EX_IOERR`).
+    Resource,
     /// Asked to stop before the end; what is done is whole, and the rest can be done later. Exit
     /// code 75.
     Stopped,
 }
 
 impl ErrorKind {
-    /// The process's exit code (1 failed, 2 usage, 3 no device, 75 stopped early).
+    /// The process's exit code (1 failed, 2 usage, 3 no device, 65 input, 74 resource, 75 stopped early).
     pub fn exit_code(self) -> u8 {
         match self {
             Self::Failed => 1,
             Self::Usage => 2,
             Self::NoDevice => 3,
+            Self::Input => 65,
+            Self::Resource => 74,
             Self::Stopped => 75,
         }
     }
@@ -55,12 +64,23 @@ impl Error {
         Self::new(ErrorKind::NoDevice, message)
     }
 
-    /// Stopped early, to be gone on with later (exit code 75).
+    /// An input is unusable or not there (exit code 65).
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Input, message)
+    }
+
+    /// An output, the device, the disk or memory failed (exit code 74).
+    pub fn resource(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Resource, message)
+    }
+
+    /// Stopped early, can be resumed (exit code 75).
     pub fn stopped(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Stopped, message)
     }
 
-    fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+    /// An error of this kind.
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         Self {
             kind,
             message: message.into(),
@@ -68,9 +88,22 @@ impl Error {
         }
     }
 
-    /// A failed read or write of `path`.
-    pub fn io(path: &Path, doing: &str, cause: &std::io::Error) -> Self {
-        Self::failed(format!("{}: cannot {doing}: {cause}", path.display()))
+    /// A failed read of the input `path`; `doing` says of what (`read the scene`). An input that is not
+    /// there, or may not be read, is [`ErrorKind::Input`]; a disk or network that failed on the way is
+    /// [`ErrorKind::Resource`].
+    pub fn reading(path: &Path, doing: &str, cause: &io::Error) -> Self {
+        use io::ErrorKind::*;
+        let kind = match cause.kind() {
+            NotFound | PermissionDenied | IsADirectory | NotADirectory | InvalidData
+            | InvalidInput | InvalidFilename | UnexpectedEof | Unsupported => ErrorKind::Input,
+            _ => ErrorKind::Resource,
+        };
+        Self::new(kind, format!("{}: cannot {doing}: {cause}", path.display()))
+    }
+
+    /// A failed write of `path`, or of what is kept there; `doing` says of what (`make the folder`).
+    pub fn writing(path: &Path, doing: &str, cause: &io::Error) -> Self {
+        Self::resource(format!("{}: cannot {doing}: {cause}", path.display()))
     }
 
     /// The same error with a hint, shown on a line of its own.

@@ -23,14 +23,14 @@ impl Dims {
     pub fn new(dims: [u64; 3]) -> Result<Self> {
         let [nx, ny, nz] = dims;
         if dims.contains(&0) {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the volume is {nx}x{ny}x{nz} voxels: every axis needs at least one"
             )));
         }
         if dims.iter().any(|&n| n > Self::MAX_AXIS)
             || u128::from(nx) * u128::from(ny) * u128::from(nz) > u128::from(Self::MAX_VOXELS)
         {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the volume is {nx}x{ny}x{nz} voxels: more than {} along an axis or 2^40 in all",
                 Self::MAX_AXIS
             )));

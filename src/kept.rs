@@ -26,7 +26,7 @@ impl Kept {
     /// The folder cannot be made.
     pub fn in_folder(folder: &Path, extension: &'static str) -> Result<Self> {
         std::fs::create_dir_all(folder)
-            .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
+            .map_err(|cause| Error::writing(folder, "make the folder", &cause))?;
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()) {
             let asked = || path.metadata().ok()?.modified().ok()?.elapsed().ok();

@@ -68,7 +68,7 @@ pub fn write_atomically(
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
     write_atomically(path, |out| {
         out.write_all(bytes)
-            .map_err(|cause| Error::io(path, "write", &cause))
+            .map_err(|cause| Error::writing(path, "write", &cause))
     })
 }
 
@@ -84,7 +84,7 @@ enum Destination {
 }
 
 fn destination(path: &Path) -> Result<Destination> {
-    let refused = |why: &str| Error::failed(format!("{}: cannot write: {why}", path.display()));
+    let refused = |why: &str| Error::resource(format!("{}: cannot write: {why}", path.display()));
     let is_folder = || refused("this is a folder").hint("name a file in it");
     if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         return Err(is_folder());
@@ -119,7 +119,7 @@ fn replace(
     permissions: Option<fs::Permissions>,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
 ) -> Result<()> {
-    let failed = |cause: io::Error| Error::io(path, "write", &cause);
+    let failed = |cause: io::Error| Error::writing(path, "write", &cause);
     let (file, temporary) = temporary_beside(path, target)?;
     let file = filled(path, file, fill)?;
     if let Some(permissions) = permissions {
@@ -135,7 +135,7 @@ fn replace(
 
 /// `fill`s an unnamed file first, since `fill` may seek, then copies it to `path`.
 fn pour(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<()> {
-    let failed = |cause: io::Error| Error::io(path, "write", &cause);
+    let failed = |cause: io::Error| Error::writing(path, "write", &cause);
     let file = tempfile::tempfile().map_err(failed)?;
     let mut file = filled(path, file, fill)?;
     file.rewind().map_err(failed)?;
@@ -153,7 +153,7 @@ fn filled(
     fill(&mut writer)?;
     writer
         .into_inner()
-        .map_err(|unflushed| Error::io(path, "write", unflushed.error()))
+        .map_err(|unflushed| Error::writing(path, "write", unflushed.error()))
 }
 
 fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
@@ -162,7 +162,7 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
         _ => PathBuf::from("."),
     };
     if target.file_name().is_none() {
-        return Err(Error::failed(format!(
+        return Err(Error::resource(format!(
             "cannot write to '{}': it names no file",
             path.display()
         )));
@@ -175,7 +175,7 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let made = builder.tempfile_in(&folder).map_err(|cause| {
-        let error = Error::failed(format!(
+        let error = Error::resource(format!(
             "{}: cannot write: {}",
             path.display(),
             refusal(&folder, &cause)
@@ -214,7 +214,7 @@ mod tests {
     fn write_text(path: &Path, text: &str) -> Result<()> {
         write_atomically(path, |out| {
             out.write_all(text.as_bytes())
-                .map_err(|e| Error::io(path, "write", &e))
+                .map_err(|e| Error::writing(path, "write", &e))
         })
     }
 
@@ -245,7 +245,7 @@ mod tests {
         for target in [path.clone(), folder.path().join("new.txt")] {
             let error = write_atomically(&target, |out| {
                 out.write_all(&vec![7; 3 * BUFFER_BYTES]).unwrap();
-                Err(Error::failed("the source ended"))
+                Err(Error::resource("the source ended"))
             })
             .unwrap_err();
             assert_eq!(error.to_string(), "the source ended");

@@ -94,7 +94,7 @@ impl Destination {
         match self {
             Self::Pictures { names, .. } if names.folder() != Path::new("") => {
                 std::fs::create_dir_all(names.folder())
-                    .map_err(|cause| Error::io(names.folder(), "make the folder", &cause))
+                    .map_err(|cause| Error::writing(names.folder(), "make the folder", &cause))
             }
             _ => Ok(()),
         }

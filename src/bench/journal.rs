@@ -56,7 +56,7 @@ impl Journal {
         let path = folder.join(Self::NAME);
         let failed = |doing: &'static str| {
             let path = path.clone();
-            move |cause: std::io::Error| Error::io(&path, doing, &cause)
+            move |cause: std::io::Error| Error::writing(&path, doing, &cause)
         };
         let mut options = File::options();
         let options = options.read(true).write(true).create(true).truncate(false);
@@ -175,7 +175,7 @@ impl Journal {
             .file
             .write_all(format!("{line}\n").as_bytes())
             .and_then(|()| self.file.sync_data());
-        written.map_err(|cause| Error::io(&self.path, "write", &cause))
+        written.map_err(|cause| Error::writing(&self.path, "write", &cause))
     }
 
     /// Removes the journal of a run that is finished: the same command then measures anew.
@@ -184,7 +184,7 @@ impl Journal {
     /// The disk.
     pub fn finish(&self) -> Result<()> {
         std::fs::remove_file(&self.path)
-            .map_err(|cause| Error::io(&self.path, "remove the file", &cause))
+            .map_err(|cause| Error::writing(&self.path, "remove the file", &cause))
     }
 }
 

@@ -17,7 +17,7 @@ pub fn report(bench: &Bench, outcome: &Outcome, folder: &Path) -> Result<Report>
     let files = Illustration::files(&outcome.pictures);
     for (illustration, file) in outcome.pictures.iter().zip(files) {
         let path = folder.join(file);
-        let png = std::fs::read(&path).map_err(|cause| Error::io(&path, "read", &cause))?;
+        let png = std::fs::read(&path).map_err(|cause| Error::reading(&path, "read", &cause))?;
         let picture = Picture {
             label: illustration.label.clone(),
             caption: illustration.caption.clone(),

@@ -27,7 +27,7 @@ impl Results {
     /// It cannot be made, or takes no files.
     pub fn in_folder(folder: &Path) -> Result<Self> {
         std::fs::create_dir_all(folder)
-            .map_err(|cause| Error::io(folder, "make the folder", &cause))?;
+            .map_err(|cause| Error::writing(folder, "make the folder", &cause))?;
         let results = Self {
             folder: folder.to_owned(),
             csv: folder.join("results.csv"),
@@ -46,7 +46,7 @@ impl Results {
         for path in self.tables() {
             if path.is_file() {
                 std::fs::remove_file(path)
-                    .map_err(|cause| Error::io(path, "remove the file", &cause))?;
+                    .map_err(|cause| Error::writing(path, "remove the file", &cause))?;
             }
         }
         Ok(())

@@ -58,7 +58,7 @@ pub fn write(chosen: Chosen, output: &Path, gzip: bool, inputs: &[&Path]) -> Res
         write_atomically(file, |out| {
             use std::io::Write;
             out.write_all(toml.as_bytes())
-                .map_err(|cause| Error::io(file, "write the scene", &cause))
+                .map_err(|cause| Error::writing(file, "write the scene", &cause))
         })?;
     }
     if let Some(first) = files.first() {

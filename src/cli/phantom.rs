@@ -217,7 +217,7 @@ fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {
         serde_json::to_writer_pretty(&mut *out, tree)
             .map_err(std::io::Error::from)
             .and_then(|()| writeln!(out))
-            .map_err(|cause| Error::io(path, "write", &cause))
+            .map_err(|cause| Error::writing(path, "write", &cause))
     })
 }
 

@@ -166,6 +166,6 @@ pub fn write(stats: &impl Serialize, path: &Path) -> Result<()> {
         serde_json::to_writer_pretty(&mut *out, stats)
             .map_err(std::io::Error::from)
             .and_then(|()| writeln!(out))
-            .map_err(|cause| Error::io(path, "write", &cause))
+            .map_err(|cause| Error::writing(path, "write", &cause))
     })
 }

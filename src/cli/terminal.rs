@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 pub fn to_stdout(data: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     match data(&mut out).and_then(|()| out.flush()) {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(Error::failed(format!(
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(Error::resource(format!(
             "cannot write to the standard output: {cause}"
         ))),
         _ => {

@@ -36,7 +36,7 @@ impl Configs {
     /// setting has no name or another's, or says what no setting can.
     pub fn read(path: &Path) -> Result<Self> {
         let text =
-            std::fs::read_to_string(path).map_err(|cause| Error::io(path, "read", &cause))?;
+            std::fs::read_to_string(path).map_err(|cause| Error::reading(path, "read", &cause))?;
         Self::parse(&text, &path.display().to_string())
     }
 

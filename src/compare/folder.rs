@@ -44,7 +44,7 @@ impl Folder {
     pub fn make(&self) -> Result<()> {
         let pictures = self.path.join(Self::PICTURES);
         std::fs::create_dir_all(&pictures)
-            .map_err(|cause| Error::io(&pictures, "make the folder", &cause))
+            .map_err(|cause| Error::writing(&pictures, "make the folder", &cause))
     }
 
     /// The rows and all that is beside them, for programs.
@@ -95,13 +95,13 @@ impl Folder {
     pub fn clear(&self) -> Result<()> {
         let pictures = self.path.join(Self::PICTURES);
         let entries = std::fs::read_dir(&pictures)
-            .map_err(|cause| Error::io(&pictures, "read the folder", &cause))?;
+            .map_err(|cause| Error::reading(&pictures, "read the folder", &cause))?;
         let names = entries.flatten().map(|entry| entry.file_name());
         let old = names.filter(|name| name.to_str().is_some_and(Self::is_picture));
         let old = old.map(|name| pictures.join(name));
         let all = old.chain([self.report(), self.json(), self.csv()]);
         for path in all.filter(|path| path.is_file()) {
-            std::fs::remove_file(&path).map_err(|cause| Error::io(&path, "remove", &cause))?;
+            std::fs::remove_file(&path).map_err(|cause| Error::writing(&path, "remove", &cause))?;
         }
         Ok(())
     }

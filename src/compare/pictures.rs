@@ -125,7 +125,7 @@ pub fn recolored(folder: &Folder, files: &RowFiles, map: &ErrorMap) -> Result<re
 /// # Errors
 /// The disk.
 pub fn bytes(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|cause| Error::io(path, "read", &cause))
+    std::fs::read(path).map_err(|cause| Error::reading(path, "read", &cause))
 }
 
 /// An error map as the report shows it; of the colours for what is no difference, those that occur.

@@ -63,7 +63,7 @@ pub(super) fn encode(
         out.flush()?;
         Ok(())
     };
-    run().map_err(|error| failed(path, "write", error))
+    run().map_err(|error| unwritable(path, error))
 }
 
 /// The header's attributes, sorted by name: as many bytes as in any other order.
@@ -114,7 +114,7 @@ impl ChannelsWriter for &Rows<'_> {
 
 /// The string attributes, sorted by key.
 pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
-    let meta = MetaData::read_from_file(path, false).map_err(|e| failed(path, "read", e))?;
+    let meta = MetaData::read_from_file(path, false).map_err(|e| unreadable(path, e))?;
     let mut pairs: Vec<_> = meta
         .headers
         .first()
@@ -150,9 +150,16 @@ fn utf8(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }
 
-fn failed(path: &Path, doing: &str, error: ExrError) -> Error {
+fn unwritable(path: &Path, error: ExrError) -> Error {
     match error {
-        ExrError::Io(cause) => Error::io(path, doing, &cause),
-        other => Error::failed(format!("{}: cannot {doing}: {other}", path.display())),
+        ExrError::Io(cause) => Error::writing(path, "write", &cause),
+        other => Error::resource(format!("{}: cannot write: {other}", path.display())),
+    }
+}
+
+fn unreadable(path: &Path, error: ExrError) -> Error {
+    match error {
+        ExrError::Io(cause) => Error::reading(path, "read", &cause),
+        other => Error::input(format!("{}: cannot read: {other}", path.display())),
     }
 }

@@ -17,13 +17,13 @@ pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     let mut magic = Vec::new();
     File::open(path)
         .and_then(|file| file.take(8).read_to_end(&mut magic))
-        .map_err(|cause| Error::io(path, "read", &cause))?;
+        .map_err(|cause| Error::reading(path, "read", &cause))?;
     if magic.starts_with(b"\x89PNG") {
         png::read_metadata(path)
     } else if magic.starts_with(b"\x76\x2f\x31\x01") {
         exr::read_metadata(path)
     } else {
-        Err(Error::failed(format!(
+        Err(Error::input(format!(
             "{}: neither a PNG nor an EXR: no other picture carries metadata",
             path.display()
         )))

@@ -27,8 +27,8 @@ pub(super) fn encode(
 
 pub(super) fn not_written(path: &Path, error: EncodingError) -> Error {
     match error {
-        EncodingError::IoError(cause) => Error::io(path, "write", &cause),
-        other => Error::failed(format!("{}: cannot write: {other}", path.display())),
+        EncodingError::IoError(cause) => Error::writing(path, "write", &cause),
+        other => Error::resource(format!("{}: cannot write: {other}", path.display())),
     }
 }
 
@@ -76,9 +76,9 @@ pub(super) fn rgb_encoder<'a, W: Write>(
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.
 pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     let unreadable = |cause: ::png::DecodingError| {
-        Error::failed(format!("{}: not a readable PNG: {cause}", path.display()))
+        Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
     };
-    let file = std::fs::File::open(path).map_err(|e| Error::io(path, "read", &e))?;
+    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
     let mut reader = Decoder::new(BufReader::new(file))
         .read_info()
         .map_err(unreadable)?;

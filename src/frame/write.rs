@@ -40,13 +40,13 @@ pub fn write(
             metadata,
         ),
         Format::Npy => npy::encode(out, frame.size, &channels_of(frame, encoding)?)
-            .map_err(|cause| Error::io(path, "write", &cause)),
+            .map_err(|cause| Error::writing(path, "write", &cause)),
     })
 }
 
 pub(super) fn image_failed(path: &Path, error: ImageError) -> Error {
     match error {
-        ImageError::IoError(cause) => Error::io(path, "write", &cause),
-        other => Error::failed(format!("{}: cannot write: {other}", path.display())),
+        ImageError::IoError(cause) => Error::writing(path, "write", &cause),
+        other => Error::resource(format!("{}: cannot write: {other}", path.display())),
     }
 }

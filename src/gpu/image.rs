@@ -60,7 +60,7 @@ impl Image {
     /// The device has no images, none so large, or none of this channel.
     pub fn check(device: &Device, what: &str, size: [usize; 3], channel: Channel) -> Result<()> {
         let name = &device.info().name;
-        let refused = |why: String| Err(Error::failed(why));
+        let refused = |why: String| Err(Error::resource(why));
         let DeviceInfoResult::ImageSupport(true) = ask(device, Query::ImageSupport)? else {
             return refused(format!("the device '{name}' has no images"));
         };

@@ -15,7 +15,7 @@ pub(super) fn check_allocation(device: &Device, what: &str, bytes: usize) -> Res
     if bytes as u64 <= most {
         return Ok(());
     }
-    Err(Error::failed(format!(
+    Err(Error::resource(format!(
         "the {what} needs {bytes} bytes in one piece, the device '{}' allows {most}",
         device.info().name
     ))
@@ -109,7 +109,7 @@ impl<T: Element> Buffer<T> {
     pub fn new(device: &Device, what: &str, len: usize) -> Result<Self> {
         let bytes = len
             .checked_mul(size_of::<T>())
-            .ok_or_else(|| Error::failed(format!("the {what} is too large")))?;
+            .ok_or_else(|| Error::resource(format!("the {what} is too large")))?;
         Ok(Self {
             any: AnyBuffer::new(device, what, bytes, T::CL_NAME)?,
             len,

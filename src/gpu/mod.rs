@@ -36,7 +36,7 @@ fn device_error(doing: &str, error: &ocl::core::Error) -> Error {
                 .unwrap_or("")
         })
         .to_owned();
-    let error = Error::failed(format!("OpenCL could not {doing}: {status}"));
+    let error = Error::resource(format!("OpenCL could not {doing}: {status}"));
     match status.as_str() {
         "CL_MEM_OBJECT_ALLOCATION_FAILURE" | "CL_OUT_OF_RESOURCES" | "CL_INVALID_BUFFER_SIZE" => {
             error.hint("the device's memory may be too small: choose a smaller picture or volume, or another --device")

@@ -92,7 +92,7 @@ fn not_built(device: &Device, program: &Program, path: &str, error: &core::Error
         .filter(|l| !l.trim().is_empty())
         .take(12)
         .collect();
-    Error::failed(format!(
+    Error::resource(format!(
         "kernels/{path} does not build on '{}': {}",
         device.info().name,
         first_lines.join("; ")

@@ -115,7 +115,7 @@ fn read(path: &str) -> Result<Cow<'static, str>> {
         let on_disk = Path::new(&folder).join(path);
         return std::fs::read_to_string(&on_disk)
             .map(Cow::Owned)
-            .map_err(|e| Error::io(&on_disk, "read the kernel source", &e));
+            .map_err(|e| Error::reading(&on_disk, "read the kernel source", &e));
     }
     FILES
         .iter()

@@ -114,7 +114,7 @@ const EXTENSION: &str = "frame";
 
 /// The colour and then the other planes, zlib-compressed (whose checksum shows a torn file).
 fn write(path: &Path, frame: &Frame) -> Result<()> {
-    let failed = |cause| Error::io(path, "write", &cause);
+    let failed = |cause| Error::writing(path, "write", &cause);
     write_atomically(path, |out| {
         let mut out = ZlibEncoder::new(out, Compression::fast());
         let mut frame = frame.clone();

@@ -68,7 +68,7 @@ impl<'a> Tracer<'a> {
         let magnitude = range.min.abs().max(range.max.abs());
         let index_from_world = volume.geometry().index_from_world().matrix3;
         if !index_from_world.is_finite() {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the spacing {} mm is too small to compute with",
                 volume.geometry().spacing_mm()
             )));

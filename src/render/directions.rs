@@ -56,7 +56,7 @@ impl Directions {
         let count = gx * gy * gz * 3;
         let mut packed: Vec<i16> = Vec::new();
         packed.try_reserve_exact(count).map_err(|_| {
-            Error::failed(format!(
+            Error::resource(format!(
                 "not enough memory for {gx}x{gy}x{gz} precomputed gradients"
             ))
         })?;

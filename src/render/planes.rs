@@ -29,7 +29,7 @@ pub fn check_room(device: &Device, size: ImageSize, wanted: Wanted, held_bytes: 
     if bytes <= memory_bytes {
         return Ok(());
     }
-    Err(Error::failed(format!(
+    Err(Error::resource(format!(
         "a picture of {size} pixels needs up to {bytes} bytes with its volume, the device '{}' has {memory_bytes}",
         device.info().name
     ))

@@ -88,7 +88,7 @@ impl Report {
         let page = self.html()?;
         write_atomically(path, |file| {
             file.write_all(page.as_bytes())
-                .map_err(|cause| Error::io(path, "write", &cause))
+                .map_err(|cause| Error::writing(path, "write", &cause))
         })
     }
 

@@ -69,7 +69,7 @@ impl TransferFile {
         let path = Path::new(name);
         let text = std::fs::read_to_string(path).map_err(|cause| {
             let presets: Vec<&str> = Self::presets().collect();
-            Error::io(path, "read the transfer function", &cause)
+            Error::reading(path, "read the transfer function", &cause)
                 .hint(format!("the presets are {}", presets.join(", ")))
         })?;
         Self::parse(&text, &path.display().to_string())

@@ -89,7 +89,7 @@ impl<T: Voxel> VoxelBuffer<T> {
             .checked_mul(size_of::<T>())
             .filter(|&bytes| offset.checked_add(bytes).is_some_and(|end| end <= map.len()))
             .ok_or_else(|| {
-                Error::failed(format!(
+                Error::input(format!(
                     "{len} voxels of {} bytes announced from byte {offset} on, but the file has {} bytes",
                     size_of::<T>(),
                     map.len()

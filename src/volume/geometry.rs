@@ -37,7 +37,7 @@ impl Geometry {
     pub fn new(origin_mm: DVec3, direction: DMat3, spacing_mm: DVec3) -> Result<Self> {
         let [x, y, z] = spacing_mm.to_array();
         if ![x, y, z].iter().all(|s| Self::SPACING_MM.contains(s)) {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the spacing {x:e}, {y:e}, {z:e} mm: each must be {:e} to {:e} mm",
                 Self::SPACING_MM.start(),
                 Self::SPACING_MM.end()
@@ -48,7 +48,7 @@ impl Geometry {
             .iter()
             .all(|o| o.abs() <= Self::FARTHEST_ORIGIN_MM)
         {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the origin {x:e}, {y:e}, {z:e} mm: each must be at most {:e} mm from 0",
                 Self::FARTHEST_ORIGIN_MM
             )));
@@ -57,7 +57,7 @@ impl Geometry {
         let units = columns.map(DVec3::normalize_or_zero);
         let direction = DMat3::from_cols(units[0], units[1], units[2]);
         if !direction.is_finite() || direction.determinant().abs() < 1e-6 {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the axis directions {}, {}, {} do not span space",
                 columns[0], columns[1], columns[2]
             )));

@@ -87,13 +87,13 @@ impl Volume {
         non_finite: NonFinite,
     ) -> Result<Self> {
         if voxels.len() as u64 != dims.voxels() {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "{dims} voxels announced, {} given",
                 voxels.len()
             )));
         }
         if !rescale.slope.is_finite() || !rescale.intercept.is_finite() || rescale.slope == 0.0 {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the calibration slope {}, intercept {} is unusable",
                 rescale.slope, rescale.intercept
             )));
@@ -114,7 +114,7 @@ impl Volume {
         let range = volume.range();
         let largest = range.min.abs().max(range.max.abs());
         if largest > f64::from(f32::MAX) {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the values reach {largest:e} after the calibration slope {}, intercept {}: pictures hold single precision, {:e} at most",
                 rescale.slope,
                 rescale.intercept,
@@ -128,7 +128,7 @@ impl Volume {
     fn settle_non_finite(&mut self, policy: NonFinite) -> Result<()> {
         let (range, bad) = self.voxels.scan();
         let Some(range) = range else {
-            return Err(Error::failed("no voxel has a finite value"));
+            return Err(Error::input("no voxel has a finite value"));
         };
         self.stored_range = range;
         self.non_finite = bad;
@@ -136,7 +136,7 @@ impl Volume {
             return Ok(());
         }
         if policy == NonFinite::Refuse {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "{bad} of {} voxels are NaN or infinite",
                 self.dims.voxels()
             ))

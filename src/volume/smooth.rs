@@ -37,7 +37,7 @@ pub fn smooth(volume: &Volume, sigma_mm: f64, progress: &dyn Progress) -> Result
     let mut smoothed: Vec<f32> = Vec::new();
     smoothed
         .try_reserve_exact(dims.voxels() as usize)
-        .map_err(|_| Error::failed(format!("not enough memory to smooth {dims} voxels")))?;
+        .map_err(|_| Error::resource(format!("not enough memory to smooth {dims} voxels")))?;
     smoothed.resize(dims.voxels() as usize, 0.0);
 
     let [nx, ny, nz] = dims.usize();

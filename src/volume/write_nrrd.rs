@@ -65,7 +65,7 @@ pub(super) fn write_nrrd_of(
                 out.write_all(voxels)
             }
         };
-        write().map_err(|cause| Error::io(path, "write the volume", &cause))
+        write().map_err(|cause| Error::writing(path, "write the volume", &cause))
     })
 }
 

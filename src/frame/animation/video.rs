@@ -53,7 +53,7 @@ fn codec(format: AnimationFormat) -> Result<Codec> {
         .copied()
         .ok_or_else(|| {
             let names: Vec<&str> = wanted.iter().map(|(name, _)| *name).collect();
-            Error::failed(format!(
+            Error::resource(format!(
                 "the ffmpeg that is installed has no encoder {}",
                 names.join(" or ")
             ))
@@ -66,7 +66,7 @@ fn unavailable(cause: &io::Error) -> Error {
         ErrorKind::NotFound => "is not installed".to_owned(),
         _ => format!("cannot be run: {cause}"),
     };
-    Error::failed(format!("ffmpeg, which writes .mp4 and .webm, {why}")).hint(
+    Error::resource(format!("ffmpeg, which writes .mp4 and .webm, {why}")).hint(
         "install it (apt-get install ffmpeg, dnf install ffmpeg, brew install ffmpeg), or write an .apng, a .gif, or pictures by a name such as frames/%04d.png",
     )
 }
@@ -80,7 +80,7 @@ pub(super) fn encode(
     frames: &mut dyn Iterator<Item = Result<Frame>>,
 ) -> Result<()> {
     let codec = codec(animation.format)?;
-    let temporary = |cause: io::Error| Error::io(&std::env::temp_dir(), "write", &cause);
+    let temporary = |cause: io::Error| Error::writing(&std::env::temp_dir(), "write", &cause);
     let movie = NamedTempFile::new().map_err(temporary)?;
     let mut messages = tempfile::tempfile().map_err(temporary)?;
     let mut command = command(animation, size, codec, movie.path());
@@ -98,17 +98,17 @@ pub(super) fn encode(
     let status = running.0.wait().map_err(|cause| unavailable(&cause))?;
     match (status.success(), fed) {
         (true, Ok(())) => {}
-        (true, Err(cause)) => return Err(Error::io(path, "write", &cause)),
+        (true, Err(cause)) => return Err(Error::writing(path, "write", &cause)),
         (false, _) => {
             let said = last_line(&mut messages).unwrap_or_else(|| status.to_string());
-            return Err(Error::failed(format!(
+            return Err(Error::resource(format!(
                 "{}: ffmpeg failed: {said}",
                 path.display()
             )));
         }
     }
     let mut movie = File::open(movie.path()).map_err(temporary)?;
-    io::copy(&mut movie, out).map_err(|cause| Error::io(path, "write", &cause))?;
+    io::copy(&mut movie, out).map_err(|cause| Error::writing(path, "write", &cause))?;
     Ok(())
 }
 

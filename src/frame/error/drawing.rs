@@ -43,7 +43,7 @@ impl ErrorMap {
         let bytes = self.png()?;
         write_atomically(path, |out| {
             out.write_all(&bytes)
-                .map_err(|cause| Error::io(path, "write", &cause))
+                .map_err(|cause| Error::writing(path, "write", &cause))
         })
     }
 

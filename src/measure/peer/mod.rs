@@ -102,7 +102,7 @@ impl Peer {
         let folder = tempfile::Builder::new()
             .prefix("angioray-peer-")
             .tempdir()
-            .map_err(|cause| Error::io(&std::env::temp_dir(), "make a folder", &cause))?;
+            .map_err(|cause| Error::writing(&std::env::temp_dir(), "make a folder", &cause))?;
         let mut process = Process::start(command, patience)?;
         let hello: Hello = ask(&mut process, None, "say hello")?;
         process.rename(format!("the peer {} {}", hello.peer, hello.version));
@@ -146,13 +146,13 @@ impl Peer {
     pub fn load(&mut self, volume: &Volume) -> Result<f64> {
         let path = self.folder.path().join("voxels.raw");
         fs::write(&path, volume.voxels().bytes())
-            .map_err(|cause| Error::io(&path, "write the voxels", &cause))?;
+            .map_err(|cause| Error::writing(&path, "write the voxels", &cause))?;
         let request = Request::Load(VolumeFile::of(volume, self.text_of("voxels.raw")?));
         let loaded: Result<Loaded> = ask(&mut self.process, Some(request), "load the volume");
         // It has read them, and they may be large.
         let removed = fs::remove_file(&path);
         let loaded = loaded?;
-        removed.map_err(|cause| Error::io(&path, "remove the voxels", &cause))?;
+        removed.map_err(|cause| Error::writing(&path, "remove the voxels", &cause))?;
         self.duration(loaded.loaded)
     }
 
@@ -217,7 +217,7 @@ impl Peer {
         const DEPTH: &str = "depth.f32";
         for old in [COLOR, DEPTH].map(|name| self.folder.path().join(name)) {
             if old.exists() {
-                fs::remove_file(&old).map_err(|cause| Error::io(&old, "remove", &cause))?;
+                fs::remove_file(&old).map_err(|cause| Error::writing(&old, "remove", &cause))?;
             }
         }
         let (time, has_depth) = self.draw(RenderRequest {
@@ -290,7 +290,7 @@ impl Peer {
                 "wrote {found} bytes of {name}: a picture of {size} has {expected}"
             )));
         }
-        let bytes = fs::read(&path).map_err(|cause| Error::io(&path, "read", &cause))?;
+        let bytes = fs::read(&path).map_err(|cause| Error::reading(&path, "read", &cause))?;
         let floats = bytes.as_chunks().0.iter();
         Ok(floats.map(|&bytes| f32::from_le_bytes(bytes)).collect())
     }

@@ -41,7 +41,7 @@ impl SceneFile {
     /// An unreadable file.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
-            .map_err(|cause| Error::io(path, "read the scene", &cause))?;
+            .map_err(|cause| Error::reading(path, "read the scene", &cause))?;
         Ok(Self {
             text,
             place: path.display().to_string(),

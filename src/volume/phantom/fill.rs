@@ -70,7 +70,7 @@ pub(super) fn uniform<T: Stored>(dims: Dims, value: T) -> Result<Vec<T>> {
     let len = dims.voxels() as usize;
     let mut voxels = Vec::new();
     voxels.try_reserve_exact(len).map_err(|_| {
-        Error::failed(format!(
+        Error::resource(format!(
             "not enough memory for a phantom of {dims} {} voxels",
             T::TYPE
         ))

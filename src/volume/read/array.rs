@@ -58,7 +58,7 @@ impl Array {
         let certain = matches!(payload, Payload::Mapped(_));
         if let Payload::Mapped(bytes) = &payload {
             if bytes.len() < total {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "{total} bytes of voxels announced, but only {} are there: the file is cut off or its header wrong",
                     bytes.len()
                 )));
@@ -111,7 +111,7 @@ impl Array {
         let size = self.element.scalar.bytes();
         let (mut reader, at_most) = payload.into_reader();
         if at_most < total {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "{total} bytes of voxels announced, but the compressed data cannot hold more than {at_most}"
             )));
         }
@@ -130,7 +130,7 @@ impl Array {
                 Ok(0) => {}
                 Ok(_) => self.note_rest("data"),
                 Err(cause) => {
-                    return Err(Error::failed(format!("the voxels are damaged: {cause}")));
+                    return Err(Error::input(format!("the voxels are damaged: {cause}")));
                 }
             }
         }
@@ -167,13 +167,13 @@ impl Array {
 /// The voxel count as an array size.
 fn usize_voxels(dims: Dims) -> Result<usize> {
     usize::try_from(dims.voxels())
-        .map_err(|_| Error::failed(format!("{dims} voxels do not fit this machine's memory")))
+        .map_err(|_| Error::resource(format!("{dims} voxels do not fit this machine's memory")))
 }
 
 /// Colour and vector volumes: what several formats say in their own ways.
 pub(super) fn refuse_components(count: u64, scalar: Option<Scalar>) -> Error {
     let of = scalar.map_or(String::new(), |scalar| format!(" of {}", scalar.name()));
-    Error::failed(format!(
+    Error::input(format!(
         "{count} components{of} a voxel: colour and vector volumes are not supported by this version"
     ))
     .hint("extract one component, or the brightness, into a scalar volume first")

@@ -159,7 +159,7 @@ impl Growth {
         };
         voxels
             .try_reserve_exact(target - voxels.len())
-            .map_err(|_| Error::failed(format!("not enough memory for {} voxels", self.count)))
+            .map_err(|_| Error::resource(format!("not enough memory for {} voxels", self.count)))
     }
 }
 
@@ -205,7 +205,7 @@ pub(super) fn read_voxels(
 }
 
 fn ended_early(read: u64, expected: u64) -> Error {
-    Error::failed(format!(
+    Error::input(format!(
         "the voxels end after {read} of {expected} bytes: the file is cut off or its header wrong"
     ))
 }
@@ -214,7 +214,7 @@ fn damaged(cause: &io::Error, read: u64, expected: u64) -> Error {
     if cause.kind() == io::ErrorKind::UnexpectedEof {
         return ended_early(read, expected);
     }
-    Error::failed(format!(
+    Error::input(format!(
         "the voxels cannot be read past byte {read} of {expected}: {cause}"
     ))
 }

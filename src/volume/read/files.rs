@@ -35,7 +35,7 @@ pub(super) fn numbered(text: &str) -> Result<Option<Vec<String>>> {
     let &[first, last, step, ..] = &numbers[..] else {
         return Ok(None);
     };
-    let wrong = |why: &str| Error::failed(format!("the data files '{text}': {why}"));
+    let wrong = |why: &str| Error::input(format!("the data files '{text}': {why}"));
     let distance = i128::from(last) - i128::from(first);
     if step == 0 || distance.signum() * i128::from(step).signum() < 0 {
         return Err(wrong("this step never arrives"));
@@ -104,7 +104,7 @@ pub(super) fn joined(
     }
     let count = names.len() as u64;
     if count == 0 || count > MOST_FILES || !total.is_multiple_of(count) {
-        return Err(Error::failed(format!(
+        return Err(Error::input(format!(
             "{total} bytes of voxels announced in {count} data files: they cannot have equal parts"
         )));
     }

@@ -36,7 +36,7 @@ impl Frames {
             *dim = size;
         }
         if space.next().is_some() {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "an array of {} axes is not a volume, nor a series of volumes",
                 sizes.len()
             )));
@@ -44,7 +44,7 @@ impl Frames {
         let dims = Dims::new(dims)?;
         let count = frame_axis.map_or(1, |axis| sizes[axis]);
         if count == 0 {
-            return Err(Error::failed("the file announces no frame at all"));
+            return Err(Error::input("the file announces no frame at all"));
         }
         let chosen = u64::from(frame);
         if chosen >= count {
@@ -76,7 +76,7 @@ impl Frames {
             .ok()
             .filter(|&total| total < 1 << 60)
             .ok_or_else(|| {
-                Error::failed(format!(
+                Error::input(format!(
                     "{} frames of {dims} voxels announced: more than any file holds",
                     self.count
                 ))

@@ -83,7 +83,7 @@ impl Fields {
     fn need(&self, name: &'static str) -> Result<&str> {
         self.get(&[name])
             .map(|(_, value)| value)
-            .ok_or_else(|| Error::failed(format!("the MetaImage header has no '{name}'")))
+            .ok_or_else(|| Error::input(format!("the MetaImage header has no '{name}'")))
     }
 
     fn is_true(&self, names: &[&'static str]) -> bool {
@@ -107,7 +107,7 @@ impl Fields {
             "MET_FLOAT" => Scalar::F32,
             "MET_DOUBLE" => Scalar::F64,
             _ => {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "the MetaImage element type '{name}' is unknown"
                 )));
             }
@@ -183,7 +183,7 @@ impl Steps {
             skip_bytes: match header_size {
                 -1 => None,
                 size => Some(u64::try_from(size).map_err(|_| {
-                    Error::failed(format!("the header's 'HeaderSize = {size}' makes no sense"))
+                    Error::input(format!("the header's 'HeaderSize = {size}' makes no sense"))
                 })?),
             },
             is_compressed: fields.is_true(&["CompressedData"]),
@@ -198,7 +198,7 @@ impl Steps {
         let payload = match self.skip_bytes {
             Some(count) => payload.skip(count)?,
             None if self.is_compressed => {
-                return Err(Error::failed(
+                return Err(Error::input(
                     "'HeaderSize = -1' needs voxels that are not compressed",
                 ));
             }
@@ -218,10 +218,10 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
     let data = fields
         .data
         .as_ref()
-        .ok_or_else(|| Error::failed("the MetaImage header ends without 'ElementDataFile'"))?;
+        .ok_or_else(|| Error::input("the MetaImage header ends without 'ElementDataFile'"))?;
     let axes: usize = number("NDims", fields.need("NDims")?)?;
     if !(1..=4).contains(&axes) {
-        return Err(Error::failed(format!("a MetaImage of {axes} axes")));
+        return Err(Error::input(format!("a MetaImage of {axes} axes")));
     }
     let mut sizes: Vec<u64> = exactly("DimSize", fields.need("DimSize")?, axes)?;
     let mut frame_axis = (axes == 4).then_some(3);

@@ -26,7 +26,7 @@ pub use raw::{RawLayout, RawSize, RawType};
 use std::path::Path;
 
 use self::source::Source;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::volume::{NonFinite, Volume};
 
@@ -76,10 +76,7 @@ fn one_sentence(error: &Error) -> Error {
     if message.chars().nth(LONGEST).is_some() {
         sentence.push('…');
     }
-    let cleaned = match error.kind() {
-        ErrorKind::Usage => Error::usage(sentence),
-        _ => Error::failed(sentence),
-    };
+    let cleaned = Error::new(error.kind(), sentence);
     match error.hint_text() {
         Some(hint) => cleaned.hint(hint),
         None => cleaned,
@@ -107,7 +104,7 @@ fn read_source(source: Source, request: &Request) -> Result<Volume> {
         raw::read(source, request)
     } else if let Some(name) = foreign_format(head) {
         Err(
-            Error::failed(format!("this is {name}, which this version does not read"))
+            Error::input(format!("this is {name}, which this version does not read"))
                 .hint("convert it to NRRD, MetaImage, NIfTI or NumPy"),
         )
     } else {

@@ -110,7 +110,7 @@ impl Header {
     fn parse(head: &[u8]) -> Result<Self> {
         let (size, endian) = size_and_endian(head)
             .filter(|&(size, _)| head.len() >= size as usize)
-            .ok_or_else(|| Error::failed("the NIfTI header is cut off"))?;
+            .ok_or_else(|| Error::input("the NIfTI header is cut off"))?;
         let is_pair = magic(head, size).is_some_and(|magic| magic.starts_with(b"ni"));
         let b = Bytes {
             bytes: head,
@@ -164,7 +164,7 @@ impl Header {
     fn sizes(&self) -> Result<[u64; 4]> {
         let axes = self.dim[0];
         if !(1..=7).contains(&axes) {
-            return Err(Error::failed(format!("the header announces {axes} axes")));
+            return Err(Error::input(format!("the header announces {axes} axes")));
         }
         let mut sizes = [1u64; 4];
         for (axis, &size) in self.dim[1..=axes as usize].iter().enumerate() {
@@ -172,7 +172,7 @@ impl Header {
                 .ok()
                 .and_then(|size| sizes[axis.min(3)].checked_mul(size));
             sizes[axis.min(3)] = grown.ok_or_else(|| {
-                Error::failed(format!("the header announces sizes {:?}", &self.dim[1..]))
+                Error::input(format!("the header announces sizes {:?}", &self.dim[1..]))
             })?;
         }
         Ok(sizes)
@@ -193,13 +193,13 @@ impl Header {
             128 => return Err(refuse_components(3, Some(Scalar::U8))),
             2304 => return Err(refuse_components(4, Some(Scalar::U8))),
             32 | 1792 | 2048 => {
-                return Err(Error::failed("complex numbers are not supported")
+                return Err(Error::input("complex numbers are not supported")
                     .hint("write their magnitude into a volume first"));
             }
-            1 => return Err(Error::failed("volumes of single bits are not supported")),
-            1536 => return Err(Error::failed("128-bit floats are not supported")),
+            1 => return Err(Error::input("volumes of single bits are not supported")),
+            1536 => return Err(Error::input("128-bit floats are not supported")),
             other => {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "the header's datatype {other} is unknown"
                 )));
             }
@@ -313,7 +313,7 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
         notes,
     };
     if !(0.0..1e15).contains(&header.vox_offset) {
-        return Err(Error::failed(format!(
+        return Err(Error::input(format!(
             "the voxels cannot start at byte {}",
             header.vox_offset
         )));
@@ -370,7 +370,7 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
     let read_header = || {
         let source = Source::open(header)?;
         if !is_nifti(source.head()) {
-            return Err(Error::failed(
+            return Err(Error::input(
                 "is no NIfTI header (of such pairs, Analyze 7.5 is not read)",
             ));
         }
@@ -387,6 +387,6 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
 pub(super) fn image_beside(header: &Path) -> Result<PathBuf> {
     let stem = stem(header, ".hdr").unwrap_or_else(|| header.with_extension("").into_os_string());
     existing(&stem, &[".img", ".img.gz", ".IMG", ".IMG.gz"]).ok_or_else(|| {
-        Error::failed("this is the header of a NIfTI pair, but no .img lies beside it")
+        Error::input("this is the header of a NIfTI pair, but no .img lies beside it")
     })
 }

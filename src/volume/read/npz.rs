@@ -56,7 +56,7 @@ impl Entry {
 /// name, else the first.
 pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
     let file = source.plain().ok_or_else(|| {
-        Error::failed("this is a zip archive inside gzip").hint("unpack it with gunzip first")
+        Error::input("this is a zip archive inside gzip").hint("unpack it with gunzip first")
     })?;
     let entries = entries(file)?;
     let mut shapes = Vec::new();
@@ -74,7 +74,7 @@ pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
         }
     }
     let Some((_, entry)) = chosen else {
-        return Err(Error::failed(if entries.is_empty() {
+        return Err(Error::input(if entries.is_empty() {
             "this is a zip archive without NumPy arrays: DICOM and other archives are not read by this version".to_owned()
         } else {
             format!("no array has three or four axes: {}", shapes.join(", "))
@@ -94,7 +94,7 @@ pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
 }
 
 fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
-    let damaged = |cause| Error::failed(format!("the zip archive is damaged: {cause}"));
+    let damaged = |cause| Error::input(format!("the zip archive is damaged: {cause}"));
     let mut archive = ZipArchive::new(Cursor::new(file.as_slice())).map_err(damaged)?;
     let mut entries = Vec::new();
     for index in 0..archive.len().min(MOST_ARRAYS) {
@@ -103,7 +103,7 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
         let Some(name) = name.strip_suffix(".npy") else {
             continue;
         };
-        let refused = |why: &str| Err(Error::failed(format!("array '{name}' is {why}")));
+        let refused = |why: &str| Err(Error::input(format!("array '{name}' is {why}")));
         if member.encrypted() {
             return refused("encrypted");
         }

@@ -58,7 +58,7 @@ impl Fields {
                 continue;
             }
             let Some((name, value)) = line.split_once(':') else {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "the NRRD header's line '{}' has no ':'",
                     line.chars().take(40).collect::<String>()
                 )));
@@ -87,7 +87,7 @@ impl Fields {
             fields.values.insert(name, value);
         }
         if !closed && fields.data == DataFiles::Attached {
-            return Err(Error::failed(
+            return Err(Error::input(
                 "the NRRD header does not end: no empty line, no data file",
             ));
         }
@@ -100,7 +100,7 @@ impl Fields {
 
     pub(super) fn need(&self, name: &str) -> Result<&str> {
         self.get(name)
-            .ok_or_else(|| Error::failed(format!("the NRRD header has no field '{name}'")))
+            .ok_or_else(|| Error::input(format!("the NRRD header has no field '{name}'")))
     }
 
     fn scalar(&self) -> Result<Scalar> {
@@ -131,7 +131,7 @@ impl Fields {
             "float" => Scalar::F32,
             "double" => Scalar::F64,
             _ => {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "the NRRD type '{name}' is unknown or no number"
                 )));
             }
@@ -147,7 +147,7 @@ impl Fields {
         match self.get("endian").map(str::to_ascii_lowercase).as_deref() {
             Some("little") => Ok(Endian::Little),
             Some("big") => Ok(Endian::Big),
-            Some(other) => Err(Error::failed(format!(
+            Some(other) => Err(Error::input(format!(
                 "the NRRD header's 'endian: {other}' is neither little nor big"
             ))),
             None => {
@@ -177,7 +177,7 @@ impl Encoding {
             "bzip2" | "bz2" => Ok(Self::Bzip2),
             "ascii" | "text" | "txt" => Ok(Self::Text),
             _ => Err(
-                Error::failed(format!("the NRRD encoding '{name}' is not supported"))
+                Error::input(format!("the NRRD encoding '{name}' is not supported"))
                     .hint("raw, gzip, bzip2 and ascii are"),
             ),
         }
@@ -199,7 +199,7 @@ impl Steps {
         let skip_bytes = match number("byte skip", fields.get("byteskip").unwrap_or("0"))? {
             -1 if encoding == Encoding::Raw => None,
             skip => Some(u64::try_from(skip).map_err(|_: std::num::TryFromIntError| {
-                Error::failed(format!(
+                Error::input(format!(
                     "the header's 'byte skip: {skip}' makes no sense: only raw data allow -1"
                 ))
             })?),

@@ -42,7 +42,7 @@ impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
         if !(1..=MOST_AXES).contains(&dimension) {
-            return Err(Error::failed(format!("an NRRD array of {dimension} axes")));
+            return Err(Error::input(format!("an NRRD array of {dimension} axes")));
         }
         let sizes: Vec<u64> = exactly("sizes", fields.need("sizes")?, dimension)?;
         let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
@@ -54,7 +54,7 @@ impl Axes {
         if let Some(kinds) = &kinds
             && kinds.len() != dimension
         {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the NRRD header has {} kinds for {dimension} axes",
                 kinds.len()
             )));
@@ -63,7 +63,7 @@ impl Axes {
         if let Some(directions) = &directions
             && directions.len() != dimension
         {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the NRRD header has {} space directions for {dimension} axes",
                 directions.len()
             )));
@@ -85,16 +85,14 @@ impl Axes {
             [] => None,
             [axis] => Some(axis),
             _ => {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "of the NRRD array's {dimension} axes {} are not space: only one may be",
                     others.len()
                 )));
             }
         };
         if space_axes.is_empty() {
-            return Err(Error::failed(
-                "no axis of the NRRD array runs through space",
-            ));
+            return Err(Error::input("no axis of the NRRD array runs through space"));
         }
         let kind = |axis: usize| kinds.as_ref().map_or("", |kinds| &kinds[axis]);
         if let Some(axis) = (0..dimension).find(|&axis| is_colour(kind(axis))) {
@@ -148,7 +146,7 @@ impl Axes {
             let spacings: Vec<f64> = numbers("spacings", text)?;
             for (index, &axis) in self.space_axes.iter().enumerate() {
                 let spacing = spacings.get(axis).copied().ok_or_else(|| {
-                    Error::failed(format!("the NRRD header's 'spacings: {text}' are too few"))
+                    Error::input(format!("the NRRD header's 'spacings: {text}' are too few"))
                 })?;
                 // NaN is NRRD's word for unknown.
                 if !spacing.is_nan() {
@@ -160,7 +158,7 @@ impl Axes {
             origin = match &vectors(text)?[..] {
                 [Some(vector)] => first_three("space origin", vector)?,
                 _ => {
-                    return Err(Error::failed(format!(
+                    return Err(Error::input(format!(
                         "the NRRD header's 'space origin: {text}' is not one vector"
                     )));
                 }
@@ -188,7 +186,7 @@ fn first_three(field: &str, vector: &[f64]) -> Result<DVec3> {
     match *vector {
         [x, y] => Ok(DVec3::new(x, y, 0.0)),
         [x, y, z] | [x, y, z, _] => Ok(DVec3::new(x, y, z)),
-        _ => Err(Error::failed(format!(
+        _ => Err(Error::input(format!(
             "the NRRD header's '{field}' have {} components",
             vector.len()
         ))),
@@ -197,7 +195,7 @@ fn first_three(field: &str, vector: &[f64]) -> Result<DVec3> {
 
 /// `(1,0,0) none (0, 1, 0)`.
 fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
-    let wrong = || Error::failed(format!("the NRRD header's '{text}' are no vectors"));
+    let wrong = || Error::input(format!("the NRRD header's '{text}' are no vectors"));
     let mut found = Vec::new();
     let mut rest = text.trim();
     while !rest.is_empty() {

@@ -54,11 +54,11 @@ impl Header {
     }
 
     fn read(reader: &mut dyn Read) -> Result<Self> {
-        let cut_off = |cause| Error::failed(format!("the .npy header is cut off: {cause}"));
+        let cut_off = |cause| Error::input(format!("the .npy header is cut off: {cause}"));
         let mut start = [0; 8];
         reader.read_exact(&mut start).map_err(cut_off)?;
         if !start.starts_with(MAGIC) {
-            return Err(Error::failed("this is no .npy array"));
+            return Err(Error::input("this is no .npy array"));
         }
         let length = match start[6] {
             1 => {
@@ -72,13 +72,13 @@ impl Header {
                 u32::from_le_bytes(length) as usize
             }
             version => {
-                return Err(Error::failed(format!(
+                return Err(Error::input(format!(
                     "the .npy format's version {version} is not known"
                 )));
             }
         };
         if length > LONGEST_HEADER {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the .npy header announces {length} bytes for itself"
             )));
         }
@@ -96,18 +96,18 @@ impl Header {
                     let (_, rest) = text.split_once(&format!("{quote}{key}{quote}"))?;
                     Some(rest.trim_start().strip_prefix(':')?.trim_start())
                 })
-                .ok_or_else(|| Error::failed(format!("the .npy header has no '{key}'")))
+                .ok_or_else(|| Error::input(format!("the .npy header has no '{key}'")))
         };
         let descr = value("descr")?;
         let descr = descr
             .strip_prefix(['\'', '"'])
             .and_then(|rest| rest.split_once(['\'', '"']))
             .map(|(descr, _)| descr.to_owned())
-            .ok_or_else(|| Error::failed("arrays of records are not supported"))?;
+            .ok_or_else(|| Error::input("arrays of records are not supported"))?;
         let fortran_order = match value("fortran_order")? {
             rest if rest.starts_with("True") => true,
             rest if rest.starts_with("False") => false,
-            _ => return Err(Error::failed("the .npy header's order is unclear")),
+            _ => return Err(Error::input("the .npy header's order is unclear")),
         };
         let shape = value("shape")?
             .strip_prefix('(')
@@ -120,7 +120,7 @@ impl Header {
                     .map(|size| size.trim_end_matches('L').parse().ok())
                     .collect()
             })
-            .ok_or_else(|| Error::failed("the .npy header's shape cannot be read"))?;
+            .ok_or_else(|| Error::input("the .npy header's shape cannot be read"))?;
         Ok(Self {
             descr,
             fortran_order,
@@ -130,7 +130,7 @@ impl Header {
 
     fn element(&self) -> Result<Element> {
         let unsupported =
-            || Error::failed(format!("arrays of type '{}' are not supported", self.descr));
+            || Error::input(format!("arrays of type '{}' are not supported", self.descr));
         let (endian, kind) = match self.descr.split_at_checked(1).ok_or_else(unsupported)? {
             (">", kind) => (Endian::Big, kind),
             ("<", kind) => (Endian::Little, kind),
@@ -171,7 +171,7 @@ pub(super) fn read_array(
     let element = header.element()?;
     let mut shape = header.shape.clone();
     if shape.is_empty() || shape.len() > 4 {
-        return Err(Error::failed(format!(
+        return Err(Error::input(format!(
             "an array of {} axes is not a volume, nor a series of volumes",
             shape.len()
         )));

@@ -45,7 +45,7 @@ impl MappedBytes {
     /// Without the first `skip` bytes; fails when there are fewer.
     pub(super) fn after(mut self, skip: u64) -> Result<Self> {
         if skip > self.len() {
-            return Err(Error::failed(format!(
+            return Err(Error::input(format!(
                 "the voxels should start {skip} bytes in, but only {} bytes are there",
                 self.len()
             )));
@@ -128,7 +128,7 @@ impl Payload {
         let (mut reader, length) = self.into_reader();
         let start = reader
             .fill_buf()
-            .map_err(|cause| Error::failed(format!("the compressed voxels: {cause}")))?;
+            .map_err(|cause| Error::input(format!("the compressed voxels: {cause}")))?;
         Ok(if start.starts_with(GZIP_MAGIC) {
             Self::unzipped(GzipMembers::new(reader), length)
         } else {
@@ -162,10 +162,10 @@ impl Payload {
             } => {
                 let skipped =
                     io::copy(&mut (&mut reader).take(count), &mut io::sink()).map_err(|cause| {
-                        Error::failed(format!("the data before the voxels: {cause}"))
+                        Error::input(format!("the data before the voxels: {cause}"))
                     })?;
                 if skipped < count {
-                    return Err(Error::failed(format!(
+                    return Err(Error::input(format!(
                         "the voxels should start {count} bytes in, but only {skipped} bytes are there"
                     )));
                 }
@@ -180,7 +180,7 @@ impl Payload {
     /// Without the first `count` lines.
     pub(super) fn skip_lines(self, count: u64) -> Result<Self> {
         let missing =
-            |line| Error::failed(format!("{count} lines to skip, but the data have {line}"));
+            |line| Error::input(format!("{count} lines to skip, but the data have {line}"));
         match self {
             Self::Mapped(bytes) => {
                 let mut start = 0;
@@ -198,7 +198,7 @@ impl Payload {
                 for line in 0..count {
                     let read = reader
                         .skip_until(b'\n')
-                        .map_err(|cause| Error::failed(format!("the lines to skip: {cause}")))?;
+                        .map_err(|cause| Error::input(format!("the lines to skip: {cause}")))?;
                     if read == 0 {
                         return Err(missing(line));
                     }
@@ -213,14 +213,14 @@ impl Payload {
         match self {
             Self::Mapped(bytes) => {
                 let skip = bytes.len().checked_sub(count).ok_or_else(|| {
-                    Error::failed(format!(
+                    Error::input(format!(
                         "{count} bytes of voxels announced, but the file has {}",
                         bytes.len()
                     ))
                 })?;
                 Ok(Self::Mapped(bytes.after(skip)?))
             }
-            Self::Stream { .. } => Err(Error::failed(
+            Self::Stream { .. } => Err(Error::input(
                 "the voxels are to be found from the file's end, which needs an uncompressed file",
             )
             .hint("decompress it first")),

@@ -220,7 +220,7 @@ const MOST_COUNTED: u64 = 1 << 31;
 
 /// What to say of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {
-    let error = Error::failed(
+    let error = Error::input(
         "this is none of the formats NRRD, MetaImage, NIfTI, NumPy, and its name does not describe headerless voxels",
     );
     let flags = "for headerless voxels give --raw-size NXxNYxNZ and --raw-type (u8, i16, f32, …)";

@@ -80,20 +80,20 @@ impl Source {
 /// It is missing, no regular file, unreadable, or empty.
 pub(super) fn open_plain(path: &Path) -> Result<MappedBytes> {
     let failed = |cause: io::Error| match cause.kind() {
-        io::ErrorKind::NotFound => Error::failed("there is no such file"),
-        io::ErrorKind::PermissionDenied => Error::failed("reading it is not permitted"),
-        _ => Error::failed(format!("cannot be read: {cause}")),
+        io::ErrorKind::NotFound => Error::input("there is no such file"),
+        io::ErrorKind::PermissionDenied => Error::input("reading it is not permitted"),
+        _ => Error::input(format!("cannot be read: {cause}")),
     };
     // Asked before opening: opening a pipe would wait for its writer.
     let metadata = fs::metadata(path).map_err(failed)?;
     if metadata.is_dir() {
-        return Err(Error::failed("is a folder, not a volume file"));
+        return Err(Error::input("is a folder, not a volume file"));
     }
     if !metadata.is_file() {
-        return Err(Error::failed("is not a regular file"));
+        return Err(Error::input("is not a regular file"));
     }
     if metadata.len() == 0 {
-        return Err(Error::failed("the file is empty"));
+        return Err(Error::input("the file is empty"));
     }
     let file = File::open(path).map_err(failed)?;
     // SAFETY: the map is only read. That nobody shortens or rewrites a volume file while it is
@@ -111,7 +111,7 @@ impl Unzipped {
             .read_to_end(&mut head)
             .map_err(|cause| damaged(&cause))?;
         if head.is_empty() {
-            return Err(Error::failed("the file is empty inside its gzip wrapping"));
+            return Err(Error::input("the file is empty inside its gzip wrapping"));
         }
         Ok(Self { head, rest })
     }
@@ -119,7 +119,7 @@ impl Unzipped {
 
 fn damaged(cause: &io::Error) -> Error {
     if cause.kind() == io::ErrorKind::UnexpectedEof {
-        return Error::failed("the gzip data end early: the file is cut off");
+        return Error::input("the gzip data end early: the file is cut off");
     }
-    Error::failed(format!("the gzip data are damaged: {cause}"))
+    Error::input(format!("the gzip data are damaged: {cause}"))
 }

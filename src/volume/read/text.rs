@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 pub(super) fn number<T: FromStr>(field: &str, text: &str) -> Result<T> {
     text.trim()
         .parse()
-        .map_err(|_| Error::failed(format!("the header's '{field}: {text}' is not a number")))
+        .map_err(|_| Error::input(format!("the header's '{field}: {text}' is not a number")))
 }
 
 /// Numbers separated by blanks, or a sentence that names the field.
@@ -24,7 +24,7 @@ pub(super) fn numbers<T: FromStr>(field: &str, text: &str) -> Result<Vec<T>> {
 pub(super) fn exactly<T: FromStr>(field: &str, text: &str, count: usize) -> Result<Vec<T>> {
     let found = numbers(field, text)?;
     if found.len() != count {
-        return Err(Error::failed(format!(
+        return Err(Error::input(format!(
             "the header's '{field}: {text}' has {} numbers instead of {count}",
             found.len()
         )));

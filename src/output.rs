@@ -275,7 +275,7 @@ mod tests {
             assert!(said.contains(cause), "{said}");
             assert!(said.contains(path.to_str().unwrap()), "{said}");
             assert!(!said.contains('\n'), "{said}");
-            assert_eq!(error.exit_code(), 1);
+            assert_eq!(error.exit_code(), 74);
             assert_eq!(check_writable(&path).unwrap_err(), error);
         }
         // The control: elsewhere the check passes, and leaves nothing.

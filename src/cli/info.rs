@@ -9,9 +9,9 @@ use crate::octree::Octree;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::{Switch, VolumeOptions};
+use crate::volume::percentiles;
 
 use super::load::{Loaded, Source};
-use super::percentiles::percentiles;
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::VolumeStats;
@@ -79,7 +79,7 @@ struct Info {
     bytes: u64,
     otsu: f64,
     suggested_iso: f64,
-    /// Values above which all but 1, 50, 99 and 99.9 percent of the voxels lie.
+    /// The smallest voxel values that 1, 50, 99 and 99.9 percent of the voxels do not exceed.
     percentiles: Percentiles,
     octree: OctreeInfo,
 }
@@ -111,7 +111,7 @@ impl Info {
         for (axis, size) in size_mm.iter_mut().enumerate() {
             *size = (domain[axis].1 - domain[axis].0) * spacing[axis];
         }
-        let [p1, p50, p99, p99_9] = percentiles(volume, &loaded.histogram, [1.0, 50.0, 99.0, 99.9]);
+        let at = percentiles(volume, &[1.0, 50.0, 99.0, 99.9]);
         Self {
             volume: VolumeStats::of(&source.path, volume, loaded.non_finite),
             size_mm,
@@ -120,10 +120,10 @@ impl Info {
             otsu: loaded.subject.otsu,
             suggested_iso: loaded.subject.suggested_iso,
             percentiles: Percentiles {
-                p1,
-                p50,
-                p99,
-                p99_9,
+                p1: at[0],
+                p50: at[1],
+                p99: at[2],
+                p99_9: at[3],
             },
             octree: OctreeInfo {
                 leaf: source.leaf.edge(),

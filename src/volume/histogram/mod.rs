@@ -56,30 +56,19 @@ impl Histogram {
     pub fn edge(&self, bin: usize) -> f64 {
         self.range.at(bin as f64 / self.counts.len() as f64)
     }
-
-    /// The value below which `percent` (0 to 100) of the voxels lie, values taken as evenly spread
-    /// within their bin.
-    pub fn percentile(&self, percent: f64) -> f64 {
-        let wanted = percent.clamp(0.0, 100.0) / 100.0 * self.total() as f64;
-        let mut below = 0.0;
-        for (bin, &count) in self.counts.iter().enumerate() {
-            let count = count as f64;
-            if count > 0.0 && below + count >= wanted {
-                let (lo, hi) = (self.edge(bin), self.edge(bin + 1));
-                return lo + (hi - lo) * ((wanted - below) / count).max(0.0);
-            }
-            below += count;
-        }
-        self.range.max
-    }
 }
 
-/// How often each stored value occurs, by its key.
+/// How often each stored value of at most 16 bits occurs, by its key.
 fn tally<T: Voxel>(voxels: &[T], key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
     tally_in(voxels, 1 << (8 * size_of::<T>()), key)
 }
 
-fn tally_in<T: Voxel>(voxels: &[T], keys: usize, key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
+/// How often each of `keys` keys occurs; `key` gives a voxel's.
+pub(super) fn tally_in<T: Voxel>(
+    voxels: &[T],
+    keys: usize,
+    key: impl Fn(T) -> usize + Sync,
+) -> Vec<u64> {
     // Four tables by turns: runs of one value, such as background, would otherwise wait for their
     // own last increment. Chunks are long against a table of 2^16 counts.
     const TABLES: usize = 4;
@@ -229,19 +218,5 @@ mod tests {
             max: counts.len() as f64,
         };
         Histogram { range, counts }
-    }
-
-    #[test]
-    fn percentiles_follow_the_counts() {
-        let h = histogram(vec![90, 0, 5, 5]);
-        assert_eq!(h.percentile(0.0), 0.0);
-        assert_eq!(h.percentile(45.0), 0.5);
-        assert_eq!(h.percentile(90.0), 1.0);
-        assert!((h.percentile(92.5) - 2.5).abs() < 1e-12);
-        assert_eq!(h.percentile(100.0), 4.0);
-        assert_ne!(
-            h.percentile(45.0),
-            histogram(vec![90, 0, 5, 500]).percentile(45.0)
-        );
     }
 }

@@ -9,7 +9,7 @@ use crate::octree::Octree;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::{Switch, VolumeOptions};
-use crate::volume::percentiles;
+use crate::volume::{Histogram, percentiles};
 
 use super::load::{Loaded, Source};
 use super::progress::Bars;
@@ -64,8 +64,7 @@ impl InfoArguments {
                 writeln!(out)
             });
         }
-        let histogram = loaded.histogram.text(WIDTH);
-        to_stdout(|out| info.print(out, histogram.trim_end()))
+        to_stdout(|out| info.print(out, &loaded.histogram))
     }
 }
 
@@ -134,7 +133,7 @@ impl Info {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, histogram: &str) -> io::Result<()> {
+    fn print(&self, out: &mut dyn Write, histogram: &Histogram) -> io::Result<()> {
         let volume = &self.volume;
         let triple = |each: [f64; 3]| each.map(fine).join(" ");
         let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
@@ -188,7 +187,10 @@ impl Info {
             out,
             "\nshare of the voxels by value, from each line's on; the bars are logarithmic"
         )?;
-        writeln!(out, "{histogram}")
+        if [histogram.range.min, histogram.range.max] != volume.range {
+            writeln!(out, "the first and the last line count what lies beyond")?;
+        }
+        writeln!(out, "{}", histogram.text(WIDTH).trim_end())
     }
 }
 

@@ -9,6 +9,7 @@ mod histogram;
 mod percentiles;
 mod phantom;
 mod read;
+mod robust;
 mod smooth;
 mod write_nrrd;
 

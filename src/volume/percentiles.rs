@@ -18,11 +18,18 @@ pub fn percentiles(volume: &Volume, percents: &[f64]) -> Vec<f64> {
         .iter()
         .map(|&percent| rank(percent, volume.dims().voxels()))
         .collect();
+    let rescale = volume.rescale();
+    let stored = stored_at_ranks(volume.voxels(), &ranks);
+    stored.into_iter().map(|v| rescale.physical(v)).collect()
+}
+
+/// The stored values at ranks, each from 1 to the number of voxels.
+pub(super) fn stored_at_ranks(voxels: &Voxels, ranks: &[u64]) -> Vec<f64> {
     let whole = |counts: Vec<u64>, first: f64| -> Vec<f64> {
         let stored = |&rank: &u64| first + at_rank(&counts, rank).0 as f64;
         ranks.iter().map(stored).collect()
     };
-    let stored = match volume.voxels() {
+    match voxels {
         Voxels::U8(voxels) => whole(tally_in(voxels, 1 << 8, usize::from), 0.0),
         Voxels::U16(voxels) => whole(tally_in(voxels, HALF, usize::from), 0.0),
         Voxels::I16(voxels) => {
@@ -30,10 +37,8 @@ pub fn percentiles(volume: &Volume, percents: &[f64]) -> Vec<f64> {
             let key = |v| (i32::from(v) - first) as usize;
             whole(tally_in(voxels, HALF, key), f64::from(first))
         }
-        Voxels::F32(voxels) => floats(voxels, &ranks),
-    };
-    let rescale = volume.rescale();
-    stored.into_iter().map(|v| rescale.physical(v)).collect()
+        Voxels::F32(voxels) => floats(voxels, ranks),
+    }
 }
 
 /// The nearest rank of a percentile among `total` values, from 1.

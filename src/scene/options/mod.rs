@@ -177,7 +177,7 @@ impl SceneOptions {
         let scene = Scene {
             size: options.camera.size()?,
             camera: options.camera.camera()?,
-            picture: options.picture.picture(subject.range)?,
+            picture: options.picture.picture(subject.robust_range)?,
             clip_planes: options.clip.planes().to_vec(),
             sampling: options.sampling.sampling(),
             light: options.picture.light(),
@@ -288,6 +288,16 @@ impl SceneOptions {
             };
             let (low, high) = (end(filled.low), end(filled.high));
             notes.push(format!("window = {ends} is {low},{high}"));
+        }
+        if subject.robust_range != subject.range && given.takes_robust_range() {
+            let (robust, whole) = (subject.robust_range, subject.range);
+            notes.push(format!(
+                "the defaults are made for the values {} to {}: a few far-away ones, or padding, reach {} to {}",
+                concise(robust.min),
+                concise(robust.max),
+                concise(whole.min),
+                concise(whole.max)
+            ));
         }
         notes.extend(filled.clip.notes(subject));
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {

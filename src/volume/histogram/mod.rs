@@ -3,15 +3,18 @@
 mod chart;
 mod threshold;
 
+pub(super) use threshold::between_class_share;
 pub use threshold::suggested_iso;
 
 use rayon::prelude::*;
 
+use super::robust::stored_robust_range;
 use crate::extent::Range;
 use crate::volume::{Volume, Voxel, Voxels};
 
 /// Counts of physical values in equal bins over `range`; each bin holds its lower edge, the last
-/// one its upper edge too. A volume of one value lies in the first bin.
+/// one its upper edge too. What lies beyond the range is counted in the first and the last bin. A
+/// volume of one value lies in the first bin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
     pub range: Range,
@@ -19,11 +22,22 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// `bins` bins (at least one) over the range of `volume`. Exact for whole-number voxels: no
-    /// rounding at the bins' edges.
+    /// `bins` bins (at least one) over the whole range of `volume`.
     pub fn of(volume: &Volume, bins: usize) -> Self {
+        Self::within(volume, volume.stored_range(), bins)
+    }
+
+    /// `bins` bins (at least one) over the range in which nearly all of `volume` lies: without a
+    /// few far-away voxels and without padding, which would leave the rest a bin or two. Of most
+    /// volumes that is the whole range.
+    pub fn robust(volume: &Volume, bins: usize) -> Self {
+        Self::within(volume, stored_robust_range(volume), bins)
+    }
+
+    /// `bins` bins (at least one) over a range of stored values. Exact for whole-number voxels: no
+    /// rounding at the bins' edges.
+    pub(super) fn within(volume: &Volume, stored: Range, bins: usize) -> Self {
         let bins = bins.max(1);
-        let stored = volume.stored_range();
         let counts = match volume.voxels() {
             Voxels::U8(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
             Voxels::U16(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
@@ -36,13 +50,17 @@ impl Histogram {
             Voxels::F32(voxels) => {
                 let scale = bins as f64 / stored.width();
                 tally_in(voxels, bins, |v: f32| {
-                    // A width of 0 makes this NaN, which casts to bin 0.
+                    // A width of 0 makes this NaN, which casts to bin 0, as does what lies below.
                     (((f64::from(v) - stored.min) * scale) as usize).min(bins - 1)
                 })
             }
         };
+        let rescale = volume.rescale();
         Self {
-            range: volume.range(),
+            range: Range {
+                min: rescale.physical(stored.min),
+                max: rescale.physical(stored.max),
+            },
             counts,
         }
     }
@@ -108,7 +126,8 @@ fn fold(tally: &[u64], first: i64, stored: Range, bins: usize) -> Vec<u64> {
     let mut counts = vec![0; bins];
     for (value, &count) in (first..).zip(tally) {
         if count > 0 {
-            let bin = (value - min) as u128 * bins as u128 / width;
+            let above = (value - min).max(0);
+            let bin = above as u128 * bins as u128 / width;
             counts[(bin as usize).min(bins - 1)] += count;
         }
     }

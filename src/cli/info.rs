@@ -5,9 +5,10 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::error::Result;
+use crate::extent::Range;
 use crate::octree::Octree;
-use crate::scene::options::concise;
 use crate::scene::options::group::group;
+use crate::scene::options::{concise, concise_within};
 use crate::scene::{Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
@@ -78,6 +79,8 @@ struct Info {
     bytes: u64,
     otsu: f64,
     suggested_iso: f64,
+    /// The range without a few far-away values and padding: what defaults are made for.
+    robust_range: [f64; 2],
     /// The smallest voxel values that 1, 50, 99 and 99.9 percent of the voxels do not exceed.
     percentiles: Percentiles,
     octree: OctreeInfo,
@@ -118,6 +121,10 @@ impl Info {
             bytes,
             otsu: loaded.subject.otsu,
             suggested_iso: loaded.subject.suggested_iso,
+            robust_range: [
+                loaded.subject.robust_range.min,
+                loaded.subject.robust_range.max,
+            ],
             percentiles: Percentiles {
                 p1: at[0],
                 p50: at[1],
@@ -135,8 +142,10 @@ impl Info {
 
     fn print(&self, out: &mut dyn Write, histogram: &Histogram) -> io::Result<()> {
         let volume = &self.volume;
+        let [min, max] = volume.range;
+        let value = |value| concise_within(value, Range { min, max });
         let triple = |each: [f64; 3]| each.map(fine).join(" ");
-        let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
+        let mut row = |name: &str, text: String| writeln!(out, "{name:<14} {text}");
         row("file", volume.file.clone())?;
         let [nx, ny, nz] = volume.dims;
         row(
@@ -150,28 +159,21 @@ impl Info {
         for (axis, name) in ["x axis", "y axis", "z axis"].into_iter().enumerate() {
             row(name, triple(volume.direction.map(|world| world[axis])))?;
         }
-        row(
-            "values",
-            format!(
-                "{} to {}",
-                concise(volume.range[0]),
-                concise(volume.range[1])
-            ),
-        )?;
+        row("values", format!("{} to {}", value(min), value(max)))?;
         row("non-finite", format!("{} voxels", volume.non_finite))?;
         let p = &self.percentiles;
         row(
             "percentiles",
             format!(
                 "1%: {}  50%: {}  99%: {}  99.9%: {}",
-                concise(p.p1),
-                concise(p.p50),
-                concise(p.p99),
-                concise(p.p99_9)
+                value(p.p1),
+                value(p.p50),
+                value(p.p99),
+                value(p.p99_9)
             ),
         )?;
-        row("suggested iso", concise(self.suggested_iso))?;
-        row("otsu", concise(self.otsu))?;
+        row("suggested iso", value(self.suggested_iso))?;
+        row("otsu", value(self.otsu))?;
         let tree = &self.octree;
         row(
             "octree",

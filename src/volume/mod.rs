@@ -51,6 +51,26 @@ impl Rescale {
     pub fn stored(self, physical: f64) -> f64 {
         (physical - self.intercept) / self.slope
     }
+
+    /// The physical value without the intercept, so that values far from zero keep their digits. A
+    /// voxel's own value becomes exactly `slope · stored`.
+    pub fn without_intercept(self, physical: f64) -> f64 {
+        let stored = f64::from(self.stored(physical) as f32);
+        if self.physical(stored) == physical {
+            self.slope * stored
+        } else {
+            physical - self.intercept
+        }
+    }
+
+    /// This calibration of what `inner` gives.
+    #[must_use]
+    pub fn after(self, inner: Self) -> Self {
+        Self {
+            slope: self.slope * inner.slope,
+            intercept: self.physical(inner.intercept),
+        }
+    }
 }
 
 /// What to do with NaN and ±Inf voxels (`--non-finite`).

@@ -12,6 +12,10 @@ fn subject() -> Subject {
             min: 0.0,
             max: 255.0,
         },
+        robust_range: Range {
+            min: 0.0,
+            max: 255.0,
+        },
         otsu: 90.0,
         suggested_iso: 70.0,
     }

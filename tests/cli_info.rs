@@ -70,3 +70,16 @@ fn numbers_are_rounded_and_the_bars_explained() {
     let json: Value = serde_json::from_str(&place.done("info a.mhd --json")).unwrap();
     assert_eq!(json["origin_mm"][0], json!(-1e-9));
 }
+
+/// Ranks are those of the voxels, not of bins between the extremes: one voxel at 1e6 among 27,000.
+#[test]
+fn one_extreme_voxel_does_not_move_the_percentiles() {
+    let spike = "tests/data/cases/perfspike.nrrd";
+    let spike = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(spike);
+    let place = Place::empty();
+    let text = place.done(&format!("info {}", spike.display()));
+    assert!(
+        text.contains("1%: 0.1276308  50%: 1.485851  99%: 7.255744  99.9%: 9.213"),
+        "{text}"
+    );
+}

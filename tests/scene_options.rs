@@ -15,6 +15,10 @@ const SUBJECT: Subject = Subject {
         min: -100.0,
         max: 300.0,
     },
+    robust_range: Range {
+        min: -100.0,
+        max: 300.0,
+    },
     otsu: 42.5,
     suggested_iso: 120.0,
 };
@@ -96,6 +100,7 @@ fn a_projection_shows_the_whole_range_unless_told() {
     assert_eq!(empty.map_err(|e| e.exit_code()), Err(2));
     let constant = Subject {
         range: Range { min: 7.0, max: 7.0 },
+        robust_range: Range { min: 7.0, max: 7.0 },
         ..SUBJECT
     };
     assert!(flags(&["--mode", "mip"]).resolve(&constant).is_ok());

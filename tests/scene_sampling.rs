@@ -13,6 +13,10 @@ const SUBJECT: Subject = Subject {
         min: 0.0,
         max: 255.0,
     },
+    robust_range: Range {
+        min: 0.0,
+        max: 255.0,
+    },
     otsu: 40.0,
     suggested_iso: 120.0,
 };

@@ -140,6 +140,7 @@ pub fn subject(volume: &Volume) -> Subject {
         center_world,
         radius_mm,
         range,
+        robust_range: range,
         otsu: range.at(0.5),
         suggested_iso: range.at(0.5),
     }

@@ -60,6 +60,7 @@ impl Specimen {
             center_world,
             radius_mm,
             range: self.volume.range(),
+            robust_range: self.volume.range(),
             otsu: self.iso,
             suggested_iso: self.iso,
         };

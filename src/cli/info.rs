@@ -5,13 +5,14 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::error::Result;
+use crate::extent::Range;
 use crate::octree::Octree;
-use crate::scene::options::concise;
 use crate::scene::options::group::group;
+use crate::scene::options::{concise, concise_within};
 use crate::scene::{Switch, VolumeOptions};
+use crate::volume::{Histogram, percentiles};
 
 use super::load::{Loaded, Source};
-use super::percentiles::percentiles;
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::VolumeStats;
@@ -64,8 +65,7 @@ impl InfoArguments {
                 writeln!(out)
             });
         }
-        let histogram = loaded.histogram.text(WIDTH);
-        to_stdout(|out| info.print(out, histogram.trim_end()))
+        to_stdout(|out| info.print(out, &loaded.histogram))
     }
 }
 
@@ -79,7 +79,9 @@ struct Info {
     bytes: u64,
     otsu: f64,
     suggested_iso: f64,
-    /// Values above which all but 1, 50, 99 and 99.9 percent of the voxels lie.
+    /// The range without a few far-away values and padding: what defaults are made for.
+    robust_range: [f64; 2],
+    /// The smallest voxel values that 1, 50, 99 and 99.9 percent of the voxels do not exceed.
     percentiles: Percentiles,
     octree: OctreeInfo,
 }
@@ -111,7 +113,7 @@ impl Info {
         for (axis, size) in size_mm.iter_mut().enumerate() {
             *size = (domain[axis].1 - domain[axis].0) * spacing[axis];
         }
-        let [p1, p50, p99, p99_9] = percentiles(volume, &loaded.histogram, [1.0, 50.0, 99.0, 99.9]);
+        let at = percentiles(volume, &[1.0, 50.0, 99.0, 99.9]);
         Self {
             volume: VolumeStats::of(&source.path, volume, loaded.non_finite),
             size_mm,
@@ -119,11 +121,15 @@ impl Info {
             bytes,
             otsu: loaded.subject.otsu,
             suggested_iso: loaded.subject.suggested_iso,
+            robust_range: [
+                loaded.subject.robust_range.min,
+                loaded.subject.robust_range.max,
+            ],
             percentiles: Percentiles {
-                p1,
-                p50,
-                p99,
-                p99_9,
+                p1: at[0],
+                p50: at[1],
+                p99: at[2],
+                p99_9: at[3],
             },
             octree: OctreeInfo {
                 leaf: source.leaf.edge(),
@@ -134,10 +140,12 @@ impl Info {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, histogram: &str) -> io::Result<()> {
+    fn print(&self, out: &mut dyn Write, histogram: &Histogram) -> io::Result<()> {
         let volume = &self.volume;
+        let [min, max] = volume.range;
+        let value = |value| concise_within(value, Range { min, max });
         let triple = |each: [f64; 3]| each.map(fine).join(" ");
-        let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
+        let mut row = |name: &str, text: String| writeln!(out, "{name:<14} {text}");
         row("file", volume.file.clone())?;
         let [nx, ny, nz] = volume.dims;
         row(
@@ -151,28 +159,21 @@ impl Info {
         for (axis, name) in ["x axis", "y axis", "z axis"].into_iter().enumerate() {
             row(name, triple(volume.direction.map(|world| world[axis])))?;
         }
-        row(
-            "values",
-            format!(
-                "{} to {}",
-                concise(volume.range[0]),
-                concise(volume.range[1])
-            ),
-        )?;
+        row("values", format!("{} to {}", value(min), value(max)))?;
         row("non-finite", format!("{} voxels", volume.non_finite))?;
         let p = &self.percentiles;
         row(
             "percentiles",
             format!(
                 "1%: {}  50%: {}  99%: {}  99.9%: {}",
-                concise(p.p1),
-                concise(p.p50),
-                concise(p.p99),
-                concise(p.p99_9)
+                value(p.p1),
+                value(p.p50),
+                value(p.p99),
+                value(p.p99_9)
             ),
         )?;
-        row("suggested iso", concise(self.suggested_iso))?;
-        row("otsu", concise(self.otsu))?;
+        row("suggested iso", value(self.suggested_iso))?;
+        row("otsu", value(self.otsu))?;
         let tree = &self.octree;
         row(
             "octree",
@@ -188,7 +189,10 @@ impl Info {
             out,
             "\nshare of the voxels by value, from each line's on; the bars are logarithmic"
         )?;
-        writeln!(out, "{histogram}")
+        if [histogram.range.min, histogram.range.max] != volume.range {
+            writeln!(out, "the first and the last line count what lies beyond")?;
+        }
+        writeln!(out, "{}", histogram.text(WIDTH).trim_end())
     }
 }
 

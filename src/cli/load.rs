@@ -100,12 +100,13 @@ impl Source {
             volume = volume::smooth(&volume, self.sigma_mm, progress)?;
             smooth_ms = ms_since(began);
         }
-        let histogram = Histogram::of(&volume, BINS);
+        let histogram = Histogram::robust(&volume, BINS);
         let (center_world, radius_mm) = volume.bounding_sphere();
         let subject = Subject {
             center_world,
             radius_mm,
             range: volume.range(),
+            robust_range: histogram.range,
             otsu: histogram.otsu(),
             suggested_iso: suggested_iso(&histogram),
         };

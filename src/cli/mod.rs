@@ -10,7 +10,6 @@ mod job;
 mod load;
 mod orbit;
 mod outputs;
-mod percentiles;
 mod phantom;
 mod progress;
 mod render;

@@ -2,27 +2,28 @@
 
 use crate::extent::Dims;
 use crate::scene::Filter;
-use crate::volume::{Rescale, Voxel};
+use crate::volume::Voxel;
 
 use super::cells::{Lattice, Segment};
 use super::cubic::Cubic;
 
-/// The physical values of a volume under a reconstruction filter.
+/// The physical values of a volume, without its calibration's intercept, under a reconstruction
+/// filter.
 pub struct Field<'a, T> {
     voxels: &'a [T],
     dims: [usize; 3],
-    rescale: Rescale,
+    slope: f64,
     filter: Filter,
     pub lattice: Lattice,
 }
 
 impl<'a, T: Voxel> Field<'a, T> {
     /// `voxels` holds `dims.voxels()` values, x fastest.
-    pub fn new(voxels: &'a [T], dims: Dims, rescale: Rescale, filter: Filter) -> Self {
+    pub fn new(voxels: &'a [T], dims: Dims, slope: f64, filter: Filter) -> Self {
         Self {
             voxels,
             dims: dims.usize(),
-            rescale,
+            slope,
             filter,
             lattice: Lattice::new(dims, filter),
         }
@@ -34,7 +35,7 @@ impl<'a, T: Voxel> Field<'a, T> {
         let [nx, ny, nz] = self.dims;
         let stride = [1, nx, nx * ny];
         let base = cell[0] + cell[1] * stride[1] + cell[2] * stride[2];
-        let value = |index: usize| self.rescale.physical(self.voxels[index].into());
+        let value = |index: usize| self.slope * self.voxels[index].into();
         if self.filter == Filter::Nearest {
             return [value(base); 8];
         }

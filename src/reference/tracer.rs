@@ -48,7 +48,8 @@ impl Sight {
     };
 }
 
-/// A volume and a scene, prepared for casting rays. Of the scene it uses the picture, the clip
+/// A volume and a scene, prepared for casting rays. Φ is followed without the calibration's intercept,
+/// so that values far from zero keep their digits. Of the scene it uses the picture, the clip
 /// planes, the light, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
 pub struct Tracer<'a> {
     volume: &'a Volume,
@@ -64,8 +65,8 @@ impl<'a> Tracer<'a> {
     /// # Errors
     /// The volume's spacing is too small for double precision.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
-        let range = volume.range();
-        let magnitude = range.min.abs().max(range.max.abs());
+        let (range, slope) = (volume.stored_range(), volume.rescale().slope);
+        let magnitude = slope * range.min.abs().max(range.max.abs());
         let index_from_world = volume.geometry().index_from_world().matrix3;
         if !index_from_world.is_finite() {
             return Err(Error::input(format!(
@@ -83,7 +84,11 @@ impl<'a> Tracer<'a> {
                 .collect(),
             noise: magnitude * NOISE_SHARE,
             medium: match &scene.picture {
-                Picture::Emission(emission) => Some(Medium::new(&emission.transfer)),
+                Picture::Emission(emission) => {
+                    let rescale = volume.rescale();
+                    let moved = |value| rescale.without_intercept(value);
+                    Some(Medium::new(&emission.transfer.moved(moved)))
+                }
                 _ => None,
             },
         })
@@ -107,7 +112,7 @@ impl<'a> Tracer<'a> {
             let field = Field::new(
                 voxels,
                 dims,
-                self.volume.rescale(),
+                self.volume.rescale().slope,
                 self.scene.sampling.filter,
             );
             self.see(&field, &interval, ray.dir_world)
@@ -117,8 +122,9 @@ impl<'a> Tracer<'a> {
     fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
+                let iso = self.volume.rescale().without_intercept(*iso);
                 let (crossing, cells) =
-                    first_crossing(field, interval, *iso, *caps, self.scene.gradient);
+                    first_crossing(field, interval, iso, *caps, self.scene.gradient);
                 let seen = crossing.map_or(Sight::NOTHING, |crossing| {
                     self.surface(&crossing, interval, dir_world)
                 });
@@ -150,7 +156,7 @@ impl<'a> Tracer<'a> {
             color: [r, g, b, 1.0],
             depth_mm: interval.enter_mm + crossing.at_mm,
             normal_world,
-            value: crossing.value,
+            value: crossing.value + self.volume.rescale().intercept,
             cells: 0,
             kind: crossing.kind(),
         }
@@ -163,13 +169,21 @@ impl<'a> Tracer<'a> {
         of: Projection,
         window: Window,
     ) -> Sight {
+        let rescale = self.volume.rescale();
+        let of = match of {
+            Projection::LocalMaximum { threshold } => Projection::LocalMaximum {
+                threshold: rescale.without_intercept(threshold),
+            },
+            Projection::Maximum | Projection::Minimum | Projection::Mean => of,
+        };
         let projected = project(field, interval, of, self.noise);
-        let grey = linear_from_srgb(window.grey_srgb(projected.value));
+        let value = projected.value + rescale.intercept;
+        let grey = linear_from_srgb(window.grey_srgb(value));
         Sight {
             color: [grey, grey, grey, 1.0],
             depth_mm: interval.enter_mm + projected.at_mm,
             normal_world: DVec3::ZERO,
-            value: projected.value,
+            value,
             cells: projected.walked,
             kind: Kind::Surface,
         }

@@ -95,6 +95,24 @@ impl TransferFunction {
         knots
     }
 
+    /// The same function of values that `moved` gives, which must keep their order (but for
+    /// rounding).
+    #[must_use]
+    pub fn moved(&self, moved: impl Fn(f64) -> f64) -> Self {
+        let mut least = f64::NEG_INFINITY;
+        let knots = self.knots.iter().map(|knot| {
+            least = moved(knot.value).max(least);
+            Knot {
+                value: least,
+                ..*knot
+            }
+        });
+        Self {
+            knots: knots.collect(),
+            unit_length_mm: self.unit_length_mm,
+        }
+    }
+
     pub fn unit_length_mm(&self) -> f64 {
         self.unit_length_mm
     }

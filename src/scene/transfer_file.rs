@@ -34,7 +34,8 @@ pub enum TransferUnits {
     /// Physical values of the volume.
     #[default]
     Value,
-    /// Shares of the volume's value range, 0 to 1: for scanners whose units are arbitrary.
+    /// Shares of the volume's robust value range (without a few far-away values and padding), 0 to
+    /// 1: for scanners whose units are arbitrary.
     Range,
 }
 
@@ -83,7 +84,7 @@ impl TransferFile {
         toml::from_str(text).map_err(|error| located(&error, text, place))
     }
 
-    /// The same function over the physical values of a volume of this value range.
+    /// The same function over physical values, its shares taken of this range.
     #[must_use]
     pub fn in_values(mut self, range: Range) -> Self {
         if self.units == TransferUnits::Range {
@@ -95,7 +96,7 @@ impl TransferFile {
         self
     }
 
-    /// In linear light, for a volume of this value range.
+    /// In linear light, its shares taken of this range.
     ///
     /// # Errors
     /// As [`TransferFunction::new`].

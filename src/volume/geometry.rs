@@ -69,6 +69,21 @@ impl Geometry {
         })
     }
 
+    /// As [`Geometry::new`]; an axis of negative spacing is turned round, and its origin stays: so
+    /// ITK reads such files.
+    ///
+    /// # Errors
+    /// As [`Geometry::new`].
+    pub fn of_signed_spacing(
+        origin_mm: DVec3,
+        direction: DMat3,
+        spacing_mm: DVec3,
+    ) -> Result<Self> {
+        let sign = DVec3::select(spacing_mm.cmplt(DVec3::ZERO), DVec3::NEG_ONE, DVec3::ONE);
+        let turned = direction * DMat3::from_diagonal(sign);
+        Self::new(origin_mm, turned, spacing_mm * sign)
+    }
+
     /// From a whole affine map, such as NIfTI's sform after conversion to LPS.
     ///
     /// # Errors
@@ -133,6 +148,18 @@ mod tests {
                 .distance(p_index)
                 < 1e-7
         );
+    }
+
+    #[test]
+    fn a_negative_spacing_turns_its_axis_round() {
+        let direction = DMat3::from_rotation_z(0.3);
+        let (origin, spacing) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.5, -2.0, 4.0));
+        let g = Geometry::of_signed_spacing(origin, direction, spacing).unwrap();
+        assert_eq!(g.spacing_mm(), spacing.abs());
+        assert_eq!(g.origin_mm(), origin);
+        let step = |axis: DVec3| g.world_from_index().transform_vector3(axis);
+        assert!(step(DVec3::Y).distance(direction * DVec3::Y * -2.0) < 1e-12);
+        assert!(step(DVec3::X).distance(direction * DVec3::X * 0.5) < 1e-12);
     }
 
     #[test]

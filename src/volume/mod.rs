@@ -6,14 +6,17 @@ mod buffer;
 mod content;
 mod geometry;
 mod histogram;
+mod percentiles;
 mod phantom;
 mod read;
+mod robust;
 mod smooth;
 mod write_nrrd;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
 pub use histogram::{Histogram, suggested_iso};
+pub use percentiles::percentiles;
 pub use phantom::{
     HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
     VesselTree, orientation_of, phantom,
@@ -47,6 +50,26 @@ impl Rescale {
 
     pub fn stored(self, physical: f64) -> f64 {
         (physical - self.intercept) / self.slope
+    }
+
+    /// The physical value without the intercept, so that values far from zero keep their digits. A
+    /// voxel's own value becomes exactly `slope · stored`.
+    pub fn without_intercept(self, physical: f64) -> f64 {
+        let stored = f64::from(self.stored(physical) as f32);
+        if self.physical(stored) == physical {
+            self.slope * stored
+        } else {
+            physical - self.intercept
+        }
+    }
+
+    /// This calibration of what `inner` gives.
+    #[must_use]
+    pub fn after(self, inner: Self) -> Self {
+        Self {
+            slope: self.slope * inner.slope,
+            intercept: self.physical(inner.intercept),
+        }
     }
 }
 

@@ -7,38 +7,42 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
 
-use super::{Rescale, Volume, VoxelType, Voxels};
+use super::{Rescale, Volume, VoxelType};
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
 /// Writes `volume` to `path`: attached header, LPS space, raw or gzip encoding, the machine's
 /// byte order (named in the header; little on every machine in use). NRRD has no calibration: a
-/// calibrated volume's physical values are written, as f32.
+/// calibrated volume's physical values are written, as f32 where that holds them, else as f64.
 ///
 /// The file appears under its name only when it is whole.
 ///
 /// # Errors
 /// The file cannot be written; a physical value lies beyond f32.
 pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
-    let calibrated;
-    let voxels = if volume.rescale() == Rescale::IDENTITY {
-        volume.voxels()
+    let (single, double);
+    let (type_name, bytes) = if volume.rescale() == Rescale::IDENTITY {
+        let name = match volume.voxels().voxel_type() {
+            VoxelType::U8 => "uint8",
+            VoxelType::U16 => "uint16",
+            VoxelType::I16 => "int16",
+            VoxelType::F32 => "float",
+        };
+        (name, volume.voxels().bytes())
     } else {
-        calibrated = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
-        &calibrated
-    };
-    let type_name = match voxels.voxel_type() {
-        VoxelType::U8 => "uint8",
-        VoxelType::U16 => "uint16",
-        VoxelType::I16 => "int16",
-        VoxelType::F32 => "float",
+        double = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
+        single = in_single_precision(&double);
+        match &single {
+            Some(single) => ("float", bytemuck::cast_slice(single)),
+            None => ("double", bytemuck::cast_slice(&double)),
+        }
     };
     let endian = if cfg!(target_endian = "big") {
         "big"
     } else {
         "little"
     };
-    write_nrrd_of(volume, type_name, endian, voxels.bytes(), path, gzip)
+    write_nrrd_of(volume, type_name, endian, bytes, path, gzip)
 }
 
 /// As [`write_nrrd`], with other voxels than the volume's own: bytes of NRRD's type `type_name`.
@@ -95,7 +99,7 @@ fn header(volume: &Volume, type_name: &str, endian: &str, gzip: bool) -> String 
     )
 }
 
-fn physical_voxels(volume: &Volume) -> Result<Voxels> {
+fn physical_voxels(volume: &Volume) -> Result<Vec<f64>> {
     let range = volume.range();
     if range.min.abs().max(range.max.abs()) > f64::from(f32::MAX) {
         return Err(Error::failed(format!(
@@ -104,9 +108,20 @@ fn physical_voxels(volume: &Volume) -> Result<Voxels> {
         )));
     }
     let rescale = volume.rescale();
-    Ok(Voxels::from(
-        volume
-            .voxels()
-            .to_f64_with(|stored| rescale.physical(stored) as f32),
-    ))
+    let physical = |stored| rescale.physical(stored);
+    Ok(volume.voxels().to_f64_with(physical))
+}
+
+/// The same values as f32; `None` where some would lose digits that tell them apart: more than
+/// rounding a product with the slope does.
+fn in_single_precision(values: &[f64]) -> Option<Vec<f32>> {
+    let (min, max) = (values.iter()).fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), &v| {
+        (min.min(v), max.max(v))
+    });
+    let close = (max - min) * f64::from(f32::EPSILON);
+    let single = |&value: &f64| {
+        let single = value as f32;
+        ((f64::from(single) - value).abs() <= close).then_some(single)
+    };
+    values.iter().map(single).collect()
 }

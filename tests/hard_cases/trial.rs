@@ -194,12 +194,13 @@ fn wrong(
 
 /// The case's scenes as `angioray render` resolves them.
 pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String, Scene)> {
-    let histogram = Histogram::of(volume, 1024);
+    let histogram = Histogram::robust(volume, 1024);
     let (center_world, radius_mm) = volume.bounding_sphere();
     let subject = Subject {
         center_world,
         radius_mm,
         range: volume.range(),
+        robust_range: histogram.range,
         otsu: histogram.otsu(),
         suggested_iso: suggested_iso(&histogram),
     };

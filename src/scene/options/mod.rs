@@ -36,7 +36,7 @@ pub use numbers::{
     AngleDeg, Brightness, Contrast, Count, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance,
     Shininess, SigmaMm, SigmaVoxels, StepVoxels, Termination, Zoom,
 };
-pub(crate) use numbers::{concise, whole};
+pub(crate) use numbers::{concise, concise_within, whole};
 pub use picture::{PictureOptions, TransferChoice};
 pub use sampling::SamplingOptions;
 pub use setting::Setting;
@@ -177,7 +177,7 @@ impl SceneOptions {
         let scene = Scene {
             size: options.camera.size()?,
             camera: options.camera.camera()?,
-            picture: options.picture.picture(subject.range)?,
+            picture: options.picture.picture(subject.robust_range)?,
             clip_planes: options.clip.planes().to_vec(),
             sampling: options.sampling.sampling(),
             light: options.picture.light(),
@@ -239,6 +239,7 @@ impl SceneOptions {
 
     fn notes(&self, filled: &Self, subject: &Subject) -> Vec<String> {
         let mut notes = Vec::new();
+        let within = |value| concise_within(value, subject.range);
         if self.method() == SamplingMethod::Exact && self.steps_given() {
             let what = match filled.picture.quad {
                 Some(quad) => format!("quad = {quad}"),
@@ -253,7 +254,7 @@ impl SceneOptions {
             let Some(Threshold::Value(value)) = filled else {
                 return;
             };
-            let value = concise(value);
+            let value = within(value);
             match given {
                 None => notes.push(format!(
                     "{key} = {value}, suggested by the histogram: --{key} chooses another"
@@ -274,20 +275,30 @@ impl SceneOptions {
             let Range { min, max } = subject.range;
             notes.push(format!(
                 "iso = {} lies outside the volume's values, {} to {}: there is no surface",
-                concise(iso),
-                concise(min),
-                concise(max)
+                within(iso),
+                within(min),
+                within(max)
             ));
         }
         if let (Some(ends), Some(filled)) = (given.window, filled.picture.window)
             && ends != filled
         {
             let end = |threshold| match threshold {
-                Threshold::Value(value) => concise(value),
+                Threshold::Value(value) => within(value),
                 other => other.to_string(),
             };
             let (low, high) = (end(filled.low), end(filled.high));
             notes.push(format!("window = {ends} is {low},{high}"));
+        }
+        if subject.robust_range != subject.range && given.takes_robust_range() {
+            let (robust, whole) = (subject.robust_range, subject.range);
+            notes.push(format!(
+                "the defaults are made for the values {} to {}: a few far-away ones, or padding, reach {} to {}",
+                within(robust.min),
+                within(robust.max),
+                within(whole.min),
+                within(whole.max)
+            ));
         }
         notes.extend(filled.clip.notes(subject));
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {

@@ -1,6 +1,7 @@
 //! Numbers with a domain: valid once constructed.
 
 use super::plain::plain;
+use crate::extent::Range;
 
 /// Newtypes of `f64`, each with one fallible constructor.
 macro_rules! numbers {
@@ -49,7 +50,21 @@ macro_rules! numbers {
 /// A number as a reader wants it: seven significant digits, very large and very small ones with an
 /// exponent.
 pub(crate) fn concise(value: f64) -> String {
-    let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+    in_digits(value, 7)
+}
+
+/// As [`concise`], with as many digits as tell values of `range` apart that is far from zero.
+pub(crate) fn concise_within(value: f64, range: Range) -> String {
+    let magnitude = range.min.abs().max(range.max.abs());
+    let lost = match range.width() {
+        0.0 => 0.0,
+        width => (magnitude / width).log10().clamp(0.0, 11.0),
+    };
+    in_digits(value, (6 + lost as usize).max(7))
+}
+
+fn in_digits(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     match rounded.abs() {
         0.0 => "0".to_owned(),
         1e-4..1e10 => rounded.to_string(),

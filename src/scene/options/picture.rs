@@ -17,7 +17,7 @@ use super::subject::Subject;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
 use super::words::{GradientMethod, Mode, Shading, Switch};
 use crate::error::{Error, Result};
-use crate::scene::{Emission, HomogeneityRule, Quadrature, Refine, TransferFile};
+use crate::scene::{Emission, HomogeneityRule, Quadrature, Refine, TransferFile, TransferUnits};
 
 group! {
     /// What is shown.
@@ -49,7 +49,7 @@ group! {
         color: SrgbColor,
 
         /// Projections: the values shown black and white; numbers, shares such as 5%, or otsu
-        /// [default: the whole value range]
+        /// [default: the value range, without a few far-away values and padding]
         #[arg(long, value_name = "LO,HI", allow_hyphen_values = true)]
         window: WindowEnds,
 
@@ -58,7 +58,7 @@ group! {
         lmip_threshold: Threshold,
 
         /// dvr: the transfer function, a TOML file or a preset: cta (Hounsfield units), mra or
-        /// 3dra (shares of the value range) [default: 3dra]
+        /// 3dra (shares of the window's default) [default: 3dra]
         #[arg(long, value_name = "FILE|PRESET")]
         tf: TransferChoice,
 
@@ -348,6 +348,22 @@ impl PictureOptions {
         Ok(())
     }
 
+    /// Whether a default of these options is made from the values' robust range.
+    pub(super) fn takes_robust_range(&self) -> bool {
+        match self.mode() {
+            Mode::Iso => self.iso.is_none(),
+            Mode::Mip | Mode::Minip | Mode::Mean => self.window.is_none(),
+            Mode::Lmip => self.window.is_none() || self.lmip_threshold.is_none(),
+            Mode::Dvr => {
+                let file = match self.tf.clone() {
+                    Some(choice) => choice.read(),
+                    None => TransferFile::named(TransferFile::DEFAULT_PRESET),
+                };
+                file.is_ok_and(|file| file.units == TransferUnits::Range)
+            }
+        }
+    }
+
     /// With every default of its mode in its place, every value physical, and the transfer
     /// function written out: filling again changes nothing.
     pub(super) fn filled(self, subject: &Subject) -> Result<Self> {
@@ -386,7 +402,9 @@ impl PictureOptions {
                     None => TransferFile::named(TransferFile::DEFAULT_PRESET)?,
                 };
                 Self {
-                    tf: Some(TransferChoice::Written(file.in_values(subject.range))),
+                    tf: Some(TransferChoice::Written(
+                        file.in_values(subject.robust_range),
+                    )),
                     quad: self.quad.or(Some(Quadrature::default())),
                     termination: match self.termination {
                         Some(termination) => Some(termination),
@@ -404,9 +422,9 @@ impl PictureOptions {
     }
 }
 
-/// The whole value range where no window is given; a constant volume is middle grey.
+/// The robust value range where no window is given; a constant volume is middle grey.
 fn window_values(window: Option<WindowEnds>, subject: &Subject) -> WindowEnds {
-    let range = subject.range;
+    let range = subject.robust_range;
     let (low, high) = match window {
         Some(ends) => (ends.low.resolve(subject), ends.high.resolve(subject)),
         None if range.min < range.max => (range.min, range.max),

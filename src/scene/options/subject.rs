@@ -13,6 +13,9 @@ pub struct Subject {
     pub radius_mm: f64,
     /// Physical values.
     pub range: Range,
+    /// Physical values without a few far-away voxels and without padding: what defaults are made
+    /// of. Of most volumes the whole range.
+    pub robust_range: Range,
     /// Otsu's threshold, physical.
     pub otsu: f64,
     /// The iso value where none is given, physical.

@@ -3,15 +3,18 @@
 mod chart;
 mod threshold;
 
+pub(super) use threshold::between_class_share;
 pub use threshold::suggested_iso;
 
 use rayon::prelude::*;
 
+use super::robust::stored_robust_range;
 use crate::extent::Range;
 use crate::volume::{Volume, Voxel, Voxels};
 
 /// Counts of physical values in equal bins over `range`; each bin holds its lower edge, the last
-/// one its upper edge too. A volume of one value lies in the first bin.
+/// one its upper edge too. What lies beyond the range is counted in the first and the last bin. A
+/// volume of one value lies in the first bin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
     pub range: Range,
@@ -19,11 +22,22 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// `bins` bins (at least one) over the range of `volume`. Exact for whole-number voxels: no
-    /// rounding at the bins' edges.
+    /// `bins` bins (at least one) over the whole range of `volume`.
     pub fn of(volume: &Volume, bins: usize) -> Self {
+        Self::within(volume, volume.stored_range(), bins)
+    }
+
+    /// `bins` bins (at least one) over the range in which nearly all of `volume` lies: without a
+    /// few far-away voxels and without padding, which would leave the rest a bin or two. Of most
+    /// volumes that is the whole range.
+    pub fn robust(volume: &Volume, bins: usize) -> Self {
+        Self::within(volume, stored_robust_range(volume), bins)
+    }
+
+    /// `bins` bins (at least one) over a range of stored values. Exact for whole-number voxels: no
+    /// rounding at the bins' edges.
+    pub(super) fn within(volume: &Volume, stored: Range, bins: usize) -> Self {
         let bins = bins.max(1);
-        let stored = volume.stored_range();
         let counts = match volume.voxels() {
             Voxels::U8(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
             Voxels::U16(voxels) => fold(&tally(voxels, usize::from), 0, stored, bins),
@@ -36,13 +50,17 @@ impl Histogram {
             Voxels::F32(voxels) => {
                 let scale = bins as f64 / stored.width();
                 tally_in(voxels, bins, |v: f32| {
-                    // A width of 0 makes this NaN, which casts to bin 0.
+                    // A width of 0 makes this NaN, which casts to bin 0, as does what lies below.
                     (((f64::from(v) - stored.min) * scale) as usize).min(bins - 1)
                 })
             }
         };
+        let rescale = volume.rescale();
         Self {
-            range: volume.range(),
+            range: Range {
+                min: rescale.physical(stored.min),
+                max: rescale.physical(stored.max),
+            },
             counts,
         }
     }
@@ -56,30 +74,19 @@ impl Histogram {
     pub fn edge(&self, bin: usize) -> f64 {
         self.range.at(bin as f64 / self.counts.len() as f64)
     }
-
-    /// The value below which `percent` (0 to 100) of the voxels lie, values taken as evenly spread
-    /// within their bin.
-    pub fn percentile(&self, percent: f64) -> f64 {
-        let wanted = percent.clamp(0.0, 100.0) / 100.0 * self.total() as f64;
-        let mut below = 0.0;
-        for (bin, &count) in self.counts.iter().enumerate() {
-            let count = count as f64;
-            if count > 0.0 && below + count >= wanted {
-                let (lo, hi) = (self.edge(bin), self.edge(bin + 1));
-                return lo + (hi - lo) * ((wanted - below) / count).max(0.0);
-            }
-            below += count;
-        }
-        self.range.max
-    }
 }
 
-/// How often each stored value occurs, by its key.
+/// How often each stored value of at most 16 bits occurs, by its key.
 fn tally<T: Voxel>(voxels: &[T], key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
     tally_in(voxels, 1 << (8 * size_of::<T>()), key)
 }
 
-fn tally_in<T: Voxel>(voxels: &[T], keys: usize, key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
+/// How often each of `keys` keys occurs; `key` gives a voxel's.
+pub(super) fn tally_in<T: Voxel>(
+    voxels: &[T],
+    keys: usize,
+    key: impl Fn(T) -> usize + Sync,
+) -> Vec<u64> {
     // Four tables by turns: runs of one value, such as background, would otherwise wait for their
     // own last increment. Chunks are long against a table of 2^16 counts.
     const TABLES: usize = 4;
@@ -119,7 +126,8 @@ fn fold(tally: &[u64], first: i64, stored: Range, bins: usize) -> Vec<u64> {
     let mut counts = vec![0; bins];
     for (value, &count) in (first..).zip(tally) {
         if count > 0 {
-            let bin = (value - min) as u128 * bins as u128 / width;
+            let above = (value - min).max(0);
+            let bin = above as u128 * bins as u128 / width;
             counts[(bin as usize).min(bins - 1)] += count;
         }
     }
@@ -229,19 +237,5 @@ mod tests {
             max: counts.len() as f64,
         };
         Histogram { range, counts }
-    }
-
-    #[test]
-    fn percentiles_follow_the_counts() {
-        let h = histogram(vec![90, 0, 5, 5]);
-        assert_eq!(h.percentile(0.0), 0.0);
-        assert_eq!(h.percentile(45.0), 0.5);
-        assert_eq!(h.percentile(90.0), 1.0);
-        assert!((h.percentile(92.5) - 2.5).abs() < 1e-12);
-        assert_eq!(h.percentile(100.0), 4.0);
-        assert_ne!(
-            h.percentile(45.0),
-            histogram(vec![90, 0, 5, 500]).percentile(45.0)
-        );
     }
 }

@@ -43,6 +43,26 @@ pub fn suggested_iso(histogram: &Histogram) -> f64 {
     histogram.edge(second.filter(|_| is_solid).unwrap_or(first))
 }
 
+/// The share of the values' variance that lies between the two classes of [`Histogram::otsu`], 0 to
+/// 1: the better they are told apart, the nearer to 1.
+pub fn between_class_share(counts: &[u64]) -> f64 {
+    let weights: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
+    let Some(upper) = split(&weights) else {
+        return 0.0;
+    };
+    let mean = |bins: &[f64]| {
+        let moment: f64 = bins.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
+        moment / bins.iter().sum::<f64>()
+    };
+    let total: f64 = weights.iter().sum();
+    let low = weights[..upper].iter().sum::<f64>() / total;
+    let (all, below) = (mean(&weights), mean(&weights[..upper]));
+    let above = upper as f64 + mean(&weights[upper..]);
+    let scatter = |(bin, weight): (usize, &f64)| weight * (bin as f64 - all).powi(2);
+    let variance = weights.iter().enumerate().map(scatter).sum::<f64>() / total;
+    low * (1.0 - low) * (above - below).powi(2) / variance
+}
+
 /// The first bin of the upper of two classes with the greatest variance between them; `None` where
 /// fewer than two bins are filled.
 fn split(weights: &[f64]) -> Option<usize> {

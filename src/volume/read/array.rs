@@ -118,7 +118,7 @@ impl Array {
         let read = |reader: &mut dyn Read| {
             element::read_voxels(reader, self.element, len, certain, request.progress)
         };
-        let (voxels, loss) = if self.frames.count == 1 {
+        let kept = if self.frames.count == 1 {
             read(&mut reader)?
         } else {
             read(&mut self.frames.pick(&mut reader, size))?
@@ -134,8 +134,9 @@ impl Array {
                 }
             }
         }
-        self.note_loss(loss);
-        Ok(voxels)
+        self.note_loss(kept.loss);
+        self.rescale = self.rescale.after(kept.rescale);
+        Ok(kept.voxels)
     }
 
     fn note_rest(&mut self, what: &str) {
@@ -153,6 +154,13 @@ impl Array {
             self.dims.voxels(),
             self.element.scalar.name()
         );
+        if loss.largest > 0.0 {
+            note.push_str(&format!(
+                ": at most {:.1e}, which is {:.1e} of the value range",
+                loss.largest * self.rescale.slope.abs(),
+                loss.largest / loss.width
+            ));
+        }
         if loss.clamped > 0 {
             note.push_str(&format!(
                 "; {} beyond its range are read as ±{:e}",

@@ -5,9 +5,10 @@ use std::io::{self, Read};
 
 use half::f16;
 
+use super::narrow::narrow;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::volume::{Voxel, VoxelType, Voxels};
+use crate::volume::{Rescale, Voxel, VoxelType, Voxels};
 
 /// The number types that files store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,13 +115,38 @@ impl fmt::Display for Element {
     }
 }
 
-/// How many of the voxels a conversion to single precision has changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// What a conversion to single precision has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Loss {
-    /// Voxels whose f32 differs from the file's number.
+    /// Voxels whose number differs from the file's.
     pub(super) changed: u64,
     /// Of those, finite numbers beyond single precision's range, kept as ±3.4e38.
     pub(super) clamped: u64,
+    /// The greatest difference among the others, in the file's numbers.
+    pub(super) largest: f64,
+    /// The width of the range of the file's finite numbers.
+    pub(super) width: f64,
+}
+
+/// Voxels as they are kept: the file's number is `rescale.physical(stored)`.
+pub(super) struct Kept {
+    pub(super) voxels: Voxels,
+    pub(super) rescale: Rescale,
+    pub(super) loss: Loss,
+}
+
+impl<T> From<Vec<T>> for Kept
+where
+    Voxels: From<Vec<T>>,
+{
+    /// The file's own numbers.
+    fn from(voxels: Vec<T>) -> Self {
+        Self {
+            voxels: voxels.into(),
+            rescale: Rescale::IDENTITY,
+            loss: Loss::default(),
+        }
+    }
 }
 
 /// Reads up to the end of `buffer` or of the data; the count tells which.
@@ -159,7 +185,10 @@ impl Growth {
         };
         voxels
             .try_reserve_exact(target - voxels.len())
-            .map_err(|_| Error::resource(format!("not enough memory for {} voxels", self.count)))
+            .map_err(|_| {
+                let bytes = self.count as u64 * size_of::<T>() as u64;
+                Error::resource(format!("not enough memory for {bytes} bytes of voxels"))
+            })
     }
 }
 
@@ -177,29 +206,24 @@ pub(super) fn read_voxels(
     count: usize,
     certain: bool,
     progress: &dyn Progress,
-) -> Result<(Voxels, Loss)> {
+) -> Result<Kept> {
     let growth = Growth { count, certain };
-    let kept = Loss::default();
+    let endian = element.endian;
     Ok(match element.scalar {
-        Scalar::U8 => (
-            read_kept::<u8>(reader, element, &growth, progress)?.into(),
-            kept,
-        ),
-        Scalar::U16 => (
-            read_kept::<u16>(reader, element, &growth, progress)?.into(),
-            kept,
-        ),
-        Scalar::I16 => (
-            read_kept::<i16>(reader, element, &growth, progress)?.into(),
-            kept,
-        ),
-        Scalar::F32 => (
-            read_kept::<f32>(reader, element, &growth, progress)?.into(),
-            kept,
-        ),
-        _ => {
-            let (voxels, loss) = read_converted(reader, element, &growth, progress)?;
-            (voxels.into(), loss)
+        Scalar::U8 => read_kept::<u8>(reader, endian, &growth, progress)?.into(),
+        Scalar::U16 => read_kept::<u16>(reader, endian, &growth, progress)?.into(),
+        Scalar::I16 => read_kept::<i16>(reader, endian, &growth, progress)?.into(),
+        Scalar::F32 => read_kept::<f32>(reader, endian, &growth, progress)?.into(),
+        Scalar::I8 | Scalar::F16 => read_converted(reader, element, &growth, progress)?.into(),
+        Scalar::U32 | Scalar::I32 | Scalar::U64 | Scalar::I64 | Scalar::F64 => {
+            // As they lie in the file, in the memory in which they are then narrowed.
+            let singles = element.scalar.bytes() as usize / size_of::<f32>();
+            let count = count.checked_mul(singles).ok_or_else(|| {
+                Error::resource(format!("{count} voxels do not fit this machine's memory"))
+            })?;
+            let growth = Growth { count, certain };
+            let raw = read_kept::<f32>(reader, Endian::NATIVE, &growth, progress)?;
+            narrow(raw, element)
         }
     })
 }
@@ -221,7 +245,7 @@ fn damaged(cause: &io::Error, read: u64, expected: u64) -> Error {
 
 fn read_kept<T: Voxel>(
     reader: &mut dyn Read,
-    element: Element,
+    endian: Endian,
     growth: &Growth,
     progress: &dyn Progress,
 ) -> Result<Vec<T>> {
@@ -242,7 +266,7 @@ fn read_kept<T: Voxel>(
         if got < wanted {
             return Err(ended_early(done + got as u64, expected));
         }
-        if element.endian != Endian::NATIVE {
+        if endian != Endian::NATIVE {
             swap_bytes(&mut voxels[start..]);
         }
         progress.advance(wanted as u64);
@@ -257,17 +281,17 @@ fn swap_bytes<T: Voxel>(voxels: &mut [T]) {
     }
 }
 
+/// Numbers of types that single precision holds wholly.
 fn read_converted(
     reader: &mut dyn Read,
     element: Element,
     growth: &Growth,
     progress: &dyn Progress,
-) -> Result<(Vec<f32>, Loss)> {
+) -> Result<Vec<f32>> {
     let size = element.scalar.bytes() as usize;
     let expected = growth.count as u64 * size as u64;
     let mut scratch = vec![0; CHUNK.min(growth.count.saturating_mul(size))];
     let mut voxels: Vec<f32> = Vec::new();
-    let mut loss = Loss::default();
     while voxels.len() < growth.count {
         growth.make_room(&mut voxels)?;
         let room = voxels.capacity().min(growth.count) - voxels.len();
@@ -278,60 +302,17 @@ fn read_converted(
         if got < wanted {
             return Err(ended_early(done + got as u64, expected));
         }
-        convert(element, bytes, &mut voxels, &mut loss);
+        let half = |pair: &[u8]| match element.endian {
+            Endian::Little => f16::from_le_bytes([pair[0], pair[1]]),
+            Endian::Big => f16::from_be_bytes([pair[0], pair[1]]),
+        };
+        match element.scalar {
+            Scalar::F16 => voxels.extend(bytes.chunks_exact(2).map(|pair| half(pair).to_f32())),
+            _ => voxels.extend(bytes.iter().map(|&byte| f32::from(byte.cast_signed()))),
+        }
         progress.advance(wanted as u64);
     }
-    Ok((voxels, loss))
-}
-
-/// Appends the numbers in `bytes` as f32.
-fn convert(element: Element, bytes: &mut [u8], voxels: &mut Vec<f32>, loss: &mut Loss) {
-    macro_rules! each {
-        ($t:ty, $to_f32:expr) => {
-            for number in bytes.chunks_exact_mut(size_of::<$t>()) {
-                if element.endian != Endian::NATIVE {
-                    number.reverse();
-                }
-                let number: $t = bytemuck::pod_read_unaligned(number);
-                voxels.push($to_f32(number));
-            }
-        };
-    }
-    // i128 holds every integer type and every f32 that one of them rounds to.
-    macro_rules! integers {
-        ($t:ty) => {
-            each!($t, |number: $t| {
-                let single = number as f32;
-                loss.changed += u64::from(single as i128 != i128::from(number));
-                single
-            })
-        };
-    }
-    match element.scalar {
-        Scalar::I8 => integers!(i8),
-        Scalar::U32 => integers!(u32),
-        Scalar::I32 => integers!(i32),
-        Scalar::U64 => integers!(u64),
-        Scalar::I64 => integers!(i64),
-        Scalar::F16 => each!(u16, |bits| f16::from_bits(bits).to_f32()),
-        Scalar::F64 => each!(f64, |number| single(number, loss)),
-        Scalar::U8 | Scalar::U16 | Scalar::I16 | Scalar::F32 => {
-            unreachable!("these types are kept, not converted")
-        }
-    }
-}
-
-fn single(number: f64, loss: &mut Loss) -> f32 {
-    let single = number as f32;
-    if f64::from(single) == number || number.is_nan() {
-        return single;
-    }
-    loss.changed += 1;
-    if single.is_infinite() {
-        loss.clamped += 1;
-        return f32::MAX.copysign(single);
-    }
-    single
+    Ok(voxels)
 }
 
 #[cfg(test)]
@@ -339,41 +320,26 @@ mod tests {
     use super::*;
     use crate::progress::Silent;
 
-    fn read(scalar: Scalar, bytes: &[u8], count: usize) -> Result<(Vec<f64>, Loss)> {
+    fn read(scalar: Scalar, bytes: &[u8], count: usize) -> Result<Vec<f64>> {
         let element = Element {
             scalar,
             endian: Endian::Little,
         };
-        let (voxels, loss) = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
-        Ok(((0..count).map(|i| voxels.stored(i)).collect(), loss))
+        let kept = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
+        Ok((0..count).map(|i| kept.voxels.stored(i)).collect())
     }
 
     #[test]
-    fn a_conversion_counts_what_it_changes() {
-        let numbers: [i32; 3] = [16_777_216, 16_777_217, -5];
-        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
-        let (voxels, loss) = read(Scalar::I32, &bytes, 3).unwrap();
-        assert_eq!(voxels, [16_777_216.0, 16_777_216.0, -5.0]);
-        assert_eq!((loss.changed, loss.clamped), (1, 0));
-
-        // The largest integers round up to a power of two just outside their type.
-        let bytes = u64::MAX.to_le_bytes();
-        assert_eq!(read(Scalar::U64, &bytes, 1).unwrap().1.changed, 1);
-        let bytes = i64::MAX.to_le_bytes();
-        assert_eq!(read(Scalar::I64, &bytes, 1).unwrap().1.changed, 1);
-        let bytes = i64::MIN.to_le_bytes();
-        assert_eq!(read(Scalar::I64, &bytes, 1).unwrap().1.changed, 0);
-    }
-
-    #[test]
-    fn doubles_beyond_single_precision_are_clamped_and_infinities_kept() {
-        let numbers = [1e300, -1e300, f64::INFINITY, 0.5, f64::NAN];
-        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
-        let (voxels, loss) = read(Scalar::F64, &bytes, 5).unwrap();
-        let largest = f64::from(f32::MAX);
-        assert_eq!(voxels[..4], [largest, -largest, f64::INFINITY, 0.5]);
-        assert!(voxels[4].is_nan());
-        assert_eq!((loss.changed, loss.clamped), (2, 2));
+    fn small_numbers_become_single_precision() {
+        assert_eq!(
+            read(Scalar::I8, &[0, 127, 128, 255], 4).unwrap(),
+            [0.0, 127.0, -128.0, -1.0]
+        );
+        let halves = [0x00, 0x3c, 0x01, 0xc0];
+        assert_eq!(
+            read(Scalar::F16, &halves, 2).unwrap(),
+            [1.0, f64::from(f16::from_bits(0xc001))]
+        );
     }
 
     #[test]

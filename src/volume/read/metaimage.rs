@@ -1,7 +1,8 @@
 //! MetaImage: .mha, and .mhd with its data files.
 //!
-//! Source: the MetaIO documentation, and what ITK writes: `TransformMatrix` lists the directions of
-//! the first axis, then of the second, then of the third.
+//! Source: the MetaIO documentation, what ITK writes (`TransformMatrix` lists the directions of the
+//! first axis, then of the second, then of the third) and what it reads: keys of any bytes, `:` for
+//! `=`, and lines without either, which it skips.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -32,7 +33,7 @@ struct Fields {
 }
 
 impl Fields {
-    /// Lines up to `ElementDataFile`, or up to the first that is none of a header's.
+    /// Lines up to `ElementDataFile`; those that are not `Key = Value` are skipped.
     fn parse(head: &[u8]) -> Result<Self> {
         let head = &head[..head.len().min(LONGEST_HEADER)];
         let mut fields = Self {
@@ -44,7 +45,7 @@ impl Fields {
         while let Some(bytes) = lines.next() {
             fields.length += bytes.len();
             let Some((key, value)) = key_and_value(bytes) else {
-                break;
+                continue;
             };
             if key == "elementdatafile" {
                 fields.data = Some(Self::data_files(&value, lines)?);
@@ -140,26 +141,28 @@ impl Fields {
             }
         }
         let direction = DMat3::from_cols(columns[0], columns[1], columns[2]);
-        Geometry::new(origin_mm, direction, spacing_mm)
+        Geometry::of_signed_spacing(origin_mm, direction, spacing_mm)
     }
 }
 
-/// A header line: a word, `=`, and a value; of printable characters.
+/// A header line: a key, `=` or `:`, and a value. The key may be anything: DICOM tags, words with
+/// blanks, letters of an unknown encoding.
 fn key_and_value(line: &[u8]) -> Option<(String, String)> {
-    let line = std::str::from_utf8(line).ok()?;
-    let (key, value) = line.split_once('=')?;
-    let key = key.trim();
-    let is_word = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    is_word.then(|| (key.to_ascii_lowercase(), value.trim().to_owned()))
+    let is_separator = |c: &char| matches!(c, '=' | ':');
+    let line = String::from_utf8_lossy(line);
+    let (key, value) = line.split_once(|c| is_separator(&c))?;
+    let value = value.trim_start_matches(|c: char| is_separator(&c) || c.is_whitespace());
+    Some((key.trim().to_ascii_lowercase(), value.trim_end().to_owned()))
 }
 
-/// A header begins with `Key = Value` lines, one of which is `NDims` (`ObjectType` often comes
-/// first, but not always).
+/// A header begins with lines of text, one of which is `NDims` (`ObjectType` often comes first, but
+/// not always).
 pub(super) fn is_metaimage(head: &[u8]) -> bool {
     const LONGEST_SEARCH: usize = 1 << 16;
     head[..head.len().min(LONGEST_SEARCH)]
         .split_inclusive(|&byte| byte == b'\n')
-        .map_while(key_and_value)
+        .take_while(|line| !line.contains(&0))
+        .filter_map(key_and_value)
         .any(|(key, value)| key == "ndims" || (key == "objecttype" && value == "Image"))
 }
 
@@ -215,10 +218,15 @@ impl Steps {
 /// Reads a .mha, or a .mhd with its data files.
 pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
     let fields = Fields::parse(source.head())?;
-    let data = fields
-        .data
-        .as_ref()
-        .ok_or_else(|| Error::input("the MetaImage header ends without 'ElementDataFile'"))?;
+    let data = fields.data.as_ref().ok_or_else(|| {
+        if source.head().len() < LONGEST_HEADER {
+            Error::input("the MetaImage header ends without 'ElementDataFile'")
+        } else {
+            Error::input(format!(
+                "the MetaImage header has no 'ElementDataFile' in its first {LONGEST_HEADER} bytes"
+            ))
+        }
+    })?;
     let axes: usize = number("NDims", fields.need("NDims")?)?;
     if !(1..=4).contains(&axes) {
         return Err(Error::input(format!("a MetaImage of {axes} axes")));

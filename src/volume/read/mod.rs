@@ -9,6 +9,7 @@ mod element;
 mod files;
 mod frames;
 mod metaimage;
+mod narrow;
 mod nifti;
 mod npz;
 mod nrrd;

@@ -160,7 +160,8 @@ impl Header {
         })
     }
 
-    /// x, y, z, and all further axes as one of frames.
+    /// x, y, z, and all further axes as one of frames. After the first, an axis of none counts as one
+    /// of one, as the NIfTI library reads it.
     fn sizes(&self) -> Result<[u64; 4]> {
         let axes = self.dim[0];
         if !(1..=7).contains(&axes) {
@@ -168,6 +169,7 @@ impl Header {
         }
         let mut sizes = [1u64; 4];
         for (axis, &size) in self.dim[1..=axes as usize].iter().enumerate() {
+            let size = if axis > 0 { size.max(1) } else { size };
             let grown = u64::try_from(size)
                 .ok()
                 .and_then(|size| sizes[axis.min(3)].checked_mul(size));
@@ -262,6 +264,52 @@ impl Header {
         }
     }
 
+    /// A sentence where the volume would lie elsewhere, by more than a hundredth of a voxel, by the
+    /// qform or, where that is not set, with the voxel sizes of `pixdim`.
+    fn disagreement(
+        &self,
+        taken: &Geometry,
+        lps_mm: &dyn Fn(DAffine3) -> Result<Geometry>,
+        unit_mm: f64,
+    ) -> Option<String> {
+        const ALIKE_VOXELS: f64 = 0.01;
+        // A size that is no length says nothing.
+        let own = taken.spacing_mm() / unit_mm;
+        let sizes = DVec3::from_array([0, 1, 2].map(|axis| {
+            let size = self.pixdim[axis + 1].abs();
+            let is_length = size.is_finite() && size > 0.0;
+            if is_length { size } else { own[axis] }
+        }));
+        let (name, other) = if self.qform_code > 0 {
+            ("the qform", lps_mm(self.qform(sizes)).ok()?)
+        } else {
+            let (origin, direction) = (taken.origin_mm(), taken.direction());
+            let other = Geometry::new(origin, direction, sizes * unit_mm).ok()?;
+            ("its voxel sizes (pixdim)", other)
+        };
+        let far = DVec3::from_array([1, 2, 3].map(|axis| (self.dim[axis].max(1) - 1) as f64));
+        let (a, b) = (taken.world_from_index(), other.world_from_index());
+        let apart = (0..8).map(|corner| {
+            let pick = |axis: usize| f64::from(corner >> axis & 1) * far[axis];
+            let corner = DVec3::new(pick(0), pick(1), pick(2));
+            a.transform_point3(corner)
+                .distance(b.transform_point3(corner))
+        });
+        let apart_mm = apart.fold(0.0, f64::max);
+        let mm = |g: &Geometry| {
+            let [x, y, z] = g.spacing_mm().to_array().map(|s| (s * 1e4).round() / 1e4);
+            format!("{x} x {y} x {z}")
+        };
+        (apart_mm > ALIKE_VOXELS * taken.smallest_spacing_mm()).then(|| {
+            format!(
+                "the file's sform (voxels of {} mm) and {name} ({} mm) place the volume differently, its corners up to {} mm apart: the sform is taken",
+                mm(taken),
+                mm(&other),
+                (apart_mm * 1e3).round() / 1e3
+            )
+        })
+    }
+
     /// In mm, LPS: the sform where it is set and spans space, else the qform, else the voxel sizes
     /// alone with axes along the world's (as ITK does).
     fn geometry(&self, notes: &mut Vec<String>) -> Result<Geometry> {
@@ -279,7 +327,10 @@ impl Header {
         };
         if self.sform_code > 0 {
             match lps_mm(self.sform()) {
-                Ok(geometry) => return Ok(geometry),
+                Ok(geometry) => {
+                    notes.extend(self.disagreement(&geometry, &lps_mm, unit_mm));
+                    return Ok(geometry);
+                }
                 Err(error) => notes.push(format!("the sform is ignored: {error}")),
             }
         }

@@ -1,4 +1,4 @@
-//! NRRD: attached and detached headers, raw, gzip, bzip2 and written numbers.
+//! NRRD: attached and detached headers, raw, gzip, bzip2, hexadecimal and written numbers.
 //!
 //! Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html.
 
@@ -166,6 +166,7 @@ enum Encoding {
     Gzip,
     Bzip2,
     Text,
+    Hex,
 }
 
 impl Encoding {
@@ -176,9 +177,10 @@ impl Encoding {
             "gzip" | "gz" => Ok(Self::Gzip),
             "bzip2" | "bz2" => Ok(Self::Bzip2),
             "ascii" | "text" | "txt" => Ok(Self::Text),
+            "hex" => Ok(Self::Hex),
             _ => Err(
                 Error::input(format!("the NRRD encoding '{name}' is not supported"))
-                    .hint("raw, gzip, bzip2 and ascii are"),
+                    .hint("raw, gzip, bzip2, ascii and hex are"),
             ),
         }
     }
@@ -196,7 +198,8 @@ struct Steps {
 
 impl Steps {
     fn of(fields: &Fields, encoding: Encoding, scalar: Scalar) -> Result<Self> {
-        let skip_bytes = match number("byte skip", fields.get("byteskip").unwrap_or("0"))? {
+        let skip: i64 = number("byte skip", fields.get("byteskip").unwrap_or("0"))?;
+        let skip_bytes = match skip {
             -1 if encoding == Encoding::Raw => None,
             skip => Some(u64::try_from(skip).map_err(|_: std::num::TryFromIntError| {
                 Error::input(format!(
@@ -216,7 +219,7 @@ impl Steps {
     fn take(self, payload: Payload, length: u64) -> Result<Payload> {
         let payload = payload.skip_lines(self.skip_lines)?;
         let payload = match self.encoding {
-            Encoding::Raw | Encoding::Text => payload,
+            Encoding::Raw | Encoding::Text | Encoding::Hex => payload,
             Encoding::Gzip => payload.gunzip(),
             Encoding::Bzip2 => payload.bunzip2(),
         };
@@ -224,10 +227,10 @@ impl Steps {
             Some(count) => payload.skip(count)?,
             None => payload.last(length)?,
         };
-        Ok(if self.encoding == Encoding::Text {
-            payload.numbers(self.scalar)
-        } else {
-            payload
+        Ok(match self.encoding {
+            Encoding::Text => payload.numbers(self.scalar),
+            Encoding::Hex => payload.hex(),
+            Encoding::Raw | Encoding::Gzip | Encoding::Bzip2 => payload,
         })
     }
 }

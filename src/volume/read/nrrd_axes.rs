@@ -166,7 +166,7 @@ impl Axes {
         }
         let lps = DMat3::from_diagonal(lps_signs(space));
         let direction = lps * DMat3::from_cols(columns[0], columns[1], columns[2]);
-        Geometry::new(lps * origin, direction, spacing_mm)
+        Geometry::of_signed_spacing(lps * origin, direction, spacing_mm)
     }
 }
 

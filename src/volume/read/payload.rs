@@ -8,7 +8,7 @@ use flate2::bufread::{GzDecoder, ZlibDecoder};
 use memmap2::Mmap;
 
 use super::element::Scalar;
-use super::text::TextNumbers;
+use super::text::{HexBytes, TextNumbers};
 use crate::error::{Error, Result};
 
 /// A part of a mapped file, read from its start.
@@ -147,6 +147,12 @@ impl Payload {
             TextNumbers::new(reader, scalar),
             length.saturating_mul(scalar.bytes()),
         )
+    }
+
+    /// Bytes written as pairs of hexadecimal digits.
+    pub(super) fn hex(self) -> Self {
+        let (reader, length) = self.into_reader();
+        Self::stream(HexBytes(reader), length / 2)
     }
 
     /// Without the first `count` bytes.

@@ -6,11 +6,16 @@ use std::str::FromStr;
 use super::element::Scalar;
 use crate::error::{Error, Result};
 
-/// One number, or a sentence that names the field.
+/// One number, or a sentence that names the field and what it takes.
 pub(super) fn number<T: FromStr>(field: &str, text: &str) -> Result<T> {
-    text.trim()
-        .parse()
-        .map_err(|_| Error::input(format!("the header's '{field}: {text}' is not a number")))
+    text.trim().parse().map_err(|_| {
+        let wanted = match std::any::type_name::<T>() {
+            "i64" => "a whole number of 64 bits",
+            "u64" | "usize" => "a whole number from 0 to 2^64 - 1",
+            _ => "a number",
+        };
+        Error::input(format!("the header's '{field}: {text}' is not {wanted}"))
+    })
 }
 
 /// Numbers separated by blanks, or a sentence that names the field.
@@ -132,9 +137,75 @@ impl<R: BufRead> Read for TextNumbers<R> {
     }
 }
 
+/// Bytes written as pairs of hexadecimal digits; blanks between digits do not matter.
+pub(super) struct HexBytes<R>(pub(super) R);
+
+impl<R: BufRead> HexBytes<R> {
+    /// The next digit; `None` at the end.
+    fn digit(&mut self) -> io::Result<Option<u8>> {
+        loop {
+            let Some(&byte) = self.0.fill_buf()?.first() else {
+                return Ok(None);
+            };
+            self.0.consume(1);
+            if byte.is_ascii_whitespace() {
+                continue;
+            }
+            let digit = char::from(byte).to_digit(16).ok_or_else(|| {
+                let shown = char::from(byte).escape_default();
+                let what = format!("'{shown}' is not a hexadecimal digit");
+                io::Error::new(io::ErrorKind::InvalidData, what)
+            })?;
+            return Ok(Some(digit as u8));
+        }
+    }
+}
+
+impl<R: BufRead> Read for HexBytes<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        for (filled, byte) in buffer.iter_mut().enumerate() {
+            let Some(high) = self.digit()? else {
+                return Ok(filled);
+            };
+            let Some(low) = self.digit()? else {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            };
+            *byte = high << 4 | low;
+        }
+        Ok(buffer.len())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hexadecimal_digits_become_bytes_and_others_a_sentence() {
+        let decoded = |text: &[u8]| {
+            let mut bytes = Vec::new();
+            HexBytes(text).read_to_end(&mut bytes).map(|_| bytes)
+        };
+        assert_eq!(decoded(b"9cFF\n0 0\t1a\n").unwrap(), [0x9c, 0xff, 0, 0x1a]);
+        let error = decoded(b"00xx").unwrap_err();
+        assert!(error.to_string().contains("'x'"), "{error}");
+        assert!(decoded(b"00 1").is_err());
+    }
+
+    #[test]
+    fn a_number_that_does_not_fit_is_not_called_none() {
+        let sentence = |error: Error| error.to_string();
+        assert_eq!(number::<i64>("byte skip", "2147483648").unwrap(), 1 << 31);
+        assert_eq!(
+            sentence(number::<u64>("sizes", "-5").unwrap_err()),
+            "the header's 'sizes: -5' is not a whole number from 0 to 2^64 - 1"
+        );
+        assert_eq!(
+            sentence(number::<i64>("byte skip", "1e30").unwrap_err()),
+            "the header's 'byte skip: 1e30' is not a whole number of 64 bits"
+        );
+        assert!(sentence(number::<f64>("spacings", "x").unwrap_err()).ends_with("not a number"));
+    }
 
     #[test]
     fn written_numbers_become_bytes_and_bad_ones_a_sentence() {

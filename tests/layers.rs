@@ -3,13 +3,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const GROUND: &[&str] = &["error", "extent", "kept", "output", "progress", "stop"];
+const GROUND: &[&str] = &[
+    "abrupt", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
+];
 
 /// A module and the modules, beside the ground floor's, that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
+    ("abrupt", &[]),
     ("error", &[]),
     ("extent", &[]),
+    ("input", &[]),
     ("kept", &[]),
+    ("memory", &[]),
     ("output", &[]),
     ("progress", &[]),
     ("stop", &[]),

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::{Rescale, Volume, VoxelType};
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::output::write_atomically;
 
 /// Writes `volume` to `path`: attached header, LPS space, raw or gzip encoding, the machine's
@@ -31,7 +32,7 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
         (name, volume.voxels().bytes())
     } else {
         double = physical_voxels(volume).map_err(|error| error.at(path.display()))?;
-        single = in_single_precision(&double);
+        single = in_single_precision(&double)?;
         match &single {
             Some(single) => ("float", bytemuck::cast_slice(single)),
             None => ("double", bytemuck::cast_slice(&double)),
@@ -108,20 +109,23 @@ fn physical_voxels(volume: &Volume) -> Result<Vec<f64>> {
         )));
     }
     let rescale = volume.rescale();
-    let physical = |stored| rescale.physical(stored);
-    Ok(volume.voxels().to_f64_with(physical))
+    volume.voxels().each_with(|stored| rescale.physical(stored))
 }
 
 /// The same values as f32; `None` where some would lose digits that tell them apart: more than
 /// rounding a product with the slope does.
-fn in_single_precision(values: &[f64]) -> Option<Vec<f32>> {
+fn in_single_precision(values: &[f64]) -> Result<Option<Vec<f32>>> {
     let (min, max) = (values.iter()).fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), &v| {
         (min.min(v), max.max(v))
     });
     let close = (max - min) * f64::from(f32::EPSILON);
-    let single = |&value: &f64| {
+    let mut singles = memory::room(values.len(), format_args!("{} voxels of f32", values.len()))?;
+    for &value in values {
         let single = value as f32;
-        ((f64::from(single) - value).abs() <= close).then_some(single)
-    };
-    values.iter().map(single).collect()
+        if (f64::from(single) - value).abs() > close {
+            return Ok(None);
+        }
+        singles.push(single);
+    }
+    Ok(Some(singles))
 }

@@ -7,6 +7,7 @@ use half::f16;
 
 use super::narrow::narrow;
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::progress::Progress;
 use crate::volume::{Rescale, Voxel, VoxelType, Voxels};
 
@@ -183,12 +184,8 @@ impl Growth {
             self.count
                 .min(voxels.len().saturating_mul(2).max(Self::FIRST))
         };
-        voxels
-            .try_reserve_exact(target - voxels.len())
-            .map_err(|_| {
-                let bytes = self.count as u64 * size_of::<T>() as u64;
-                Error::resource(format!("not enough memory for {bytes} bytes of voxels"))
-            })
+        let what = format_args!("{} voxels", self.count);
+        memory::make_room(voxels, target - voxels.len(), what)
     }
 }
 

@@ -5,13 +5,12 @@ use std::path::Path;
 use clap::builder::StyledStr;
 
 use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::progress::Progress;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::one_or_more;
 use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
-use crate::stop;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
@@ -19,6 +18,7 @@ use super::phantom::Seed;
 use super::progress::Bars;
 use super::repeat::command_line;
 use super::scene::SceneArgument;
+use super::stopping;
 use super::terminal::{message, note, to_stdout};
 
 /// Measure the renderer: speed against error, as a table
@@ -197,9 +197,9 @@ impl BenchArguments {
             (false, false) => Effort::default(),
         };
         if options.output.is_some() {
-            // Before the device is opened: OpenCL drivers catch signals too, and end the process by
-            // their own unless they were there last.
-            stop::listen()?;
+            stopping::between_parts("unit of work", ErrorKind::Stopped)?;
+        } else {
+            stopping::at_once("without --output nothing is kept")?;
         }
         let Engine::Device {
             device,

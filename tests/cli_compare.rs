@@ -267,7 +267,7 @@ fn wrong_usage_is_refused_before_the_work() {
     let Some(device) = common::device_flag() else {
         return;
     };
-    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 1);
+    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 74);
     assert!(said.contains("is not a folder"), "{said}");
 }
 

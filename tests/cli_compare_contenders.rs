@@ -278,6 +278,6 @@ fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
     assert_eq!(rows(&place).len(), 1);
     fs::remove_dir_all(place.path("out")).unwrap();
     // One that the user names has to work.
-    let said = place.refused(&format!("{line} --cache home/angioray"), 1);
+    let said = place.refused(&format!("{line} --cache home/angioray"), 74);
     assert!(said.contains("--cache off"), "{said}");
 }

@@ -138,16 +138,16 @@ fn a_stored_scene_renders_from_another_folder() {
         .collect();
     assert_ne!(&relative, scene);
     place.write("elsewhere/b.toml", &relative);
-    assert_eq!(again("b.toml").status.code(), Some(1));
+    assert_eq!(again("b.toml").status.code(), Some(65));
 }
 
 #[test]
 fn a_missing_folder_is_said_before_the_volume_is_read() {
     let place = Place::empty();
     // The volume is missing too; what is checked first is what is said.
-    let said = place.refused("render none.nrrd -o no/a.png --device reference", 1);
+    let said = place.refused("render none.nrrd -o no/a.png --device reference", 74);
     assert!(said.contains("no/a.png"), "{said}");
-    let said = place.refused("render none.nrrd -o a.png --device reference", 1);
+    let said = place.refused("render none.nrrd -o a.png --device reference", 65);
     assert!(said.contains("none.nrrd"), "{said}");
 }
 
@@ -160,12 +160,12 @@ fn a_folder_that_takes_no_files_is_said_before_the_volume_is_read() {
         "render none.nrrd -o a.png --stats /proc/a.json",
         "phantom sphere -o /proc/a.nrrd",
     ] {
-        let said = place.refused(line, 1);
+        let said = place.refused(line, 74);
         assert!(said.contains("'/proc' takes no files"), "{said}");
         assert!(!said.contains("mkdir"), "{said}");
     }
     // The control: a missing folder has its cure.
-    let said = place.refused("render none.nrrd -o no/a.png", 1);
+    let said = place.refused("render none.nrrd -o no/a.png", 74);
     assert!(said.contains("mkdir -p 'no'"), "{said}");
 }
 
@@ -187,7 +187,7 @@ fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
     let place = Place::empty();
     std::fs::create_dir(place.path("a.tree.json")).unwrap();
     // What is checked first is what is said: this tree cannot be grown either.
-    let said = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 1);
+    let said = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 74);
     assert!(said.contains("a.tree.json"), "{said}");
     // The controls: another name has another tree, another kind has none.
     let said = place.refused("phantom vessels -o b.nrrd --size 16 --radius -1", 2);

@@ -119,7 +119,7 @@ fn a_wrong_file_is_refused_with_its_line() {
         );
     }
     let missing = TransferFile::named("no/such.toml").unwrap_err();
-    assert_eq!(missing.exit_code(), 1);
+    assert_eq!(missing.exit_code(), 65);
     assert!(missing.to_string().contains("no/such.toml"));
     assert!(missing.hint_text().is_some_and(|hint| hint.contains("cta")));
 }

@@ -22,7 +22,7 @@ fn metadata_comes_back_from_png_and_exr_alone() {
             fs::write(&cut, &whole[..length]).unwrap();
             match read_metadata(&cut) {
                 Ok(pairs) => assert_eq!(pairs, expected, "{name} cut at {length}"),
-                Err(error) => assert_eq!(error.exit_code(), 1),
+                Err(error) => assert_eq!(error.exit_code(), 65),
             }
         }
         fs::write(&cut, &whole[..60]).unwrap();

@@ -116,7 +116,7 @@ fn unwritable_places_leave_nothing_behind() {
         ];
         for path in places {
             let error = write(&path, &picture(), &encoding, &METADATA).unwrap_err();
-            assert_eq!(error.exit_code(), 1);
+            assert_eq!(error.exit_code(), 74);
             let said = error.to_string();
             assert!(said.starts_with(path.to_str().unwrap()), "{said}");
             assert!(!said.contains('\n'), "{said}");

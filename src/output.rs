@@ -4,9 +4,12 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
-
 use crate::error::{Error, Result};
+
+mod unfinished;
+
+use unfinished::Unfinished;
+pub use unfinished::forget_unfinished;
 
 const BUFFER_BYTES: usize = 1 << 18;
 
@@ -20,6 +23,11 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Destination::Special => Ok(()),
         Destination::File { target, .. } => temporary_beside(path, &target).map(drop),
     }
+}
+
+/// Whether [`write_atomically`] makes a file of `path`, and not a device or a pipe receives it.
+pub fn becomes_file(path: &Path) -> bool {
+    std::fs::metadata(path).map_or(true, |there| there.is_file())
 }
 
 /// That files can be written into a folder, or that it can be made where it is not there yet, as far as
@@ -43,7 +51,9 @@ pub fn check_folder(path: &Path) -> Result<()> {
 ///
 /// A new file gets the permissions that the umask gives, an old one keeps its own; a symbolic link
 /// stays and its target is replaced. What is no regular file (a device, a pipe) cannot be replaced:
-/// it receives the finished bytes.
+/// it receives the finished bytes, of which a reader that has gone away wants no more.
+///
+/// What processes that were killed have left in the folder is removed.
 ///
 /// # Errors
 /// Those of `fill`; a folder that is missing, no folder, or not writable; `path` being a folder; a
@@ -120,17 +130,15 @@ fn replace(
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
 ) -> Result<()> {
     let failed = |cause: io::Error| Error::writing(path, "write", &cause);
-    let (file, temporary) = temporary_beside(path, target)?;
+    let (file, unfinished) = temporary_beside(path, target)?;
     let file = filled(path, file, fill)?;
     if let Some(permissions) = permissions {
         file.set_permissions(permissions).map_err(failed)?;
     }
     // Some file systems report a full disk only when the data leaves the cache.
     file.sync_data().map_err(failed)?;
-    drop(file);
-    temporary
-        .persist(target)
-        .map_err(|refused| failed(refused.error))
+    // The lock is held until the file has its name.
+    unfinished.persist(target).map_err(failed)
 }
 
 /// `fill`s an unnamed file first, since `fill` may seek, then copies it to `path`.
@@ -140,8 +148,10 @@ fn pour(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> R
     let mut file = filled(path, file, fill)?;
     file.rewind().map_err(failed)?;
     let mut device = File::options().write(true).open(path).map_err(failed)?;
-    io::copy(&mut file, &mut device).map_err(failed)?;
-    Ok(())
+    match io::copy(&mut file, &mut device) {
+        Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => Err(failed(cause)),
+        _ => Ok(()),
+    }
 }
 
 fn filled(
@@ -156,7 +166,7 @@ fn filled(
         .map_err(|unflushed| Error::writing(path, "write", unflushed.error()))
 }
 
-fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
+fn temporary_beside(path: &Path, target: &Path) -> Result<(File, Unfinished)> {
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
@@ -167,14 +177,7 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
             path.display()
         )));
     }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".unfinished-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let made = builder.tempfile_in(&folder).map_err(|cause| {
+    Unfinished::in_folder(&folder).map_err(|cause| {
         let error = Error::resource(format!(
             "{}: cannot write: {}",
             path.display(),
@@ -185,8 +188,7 @@ fn temporary_beside(path: &Path, target: &Path) -> Result<(File, TempPath)> {
         } else {
             error
         }
-    })?;
-    Ok(made.into_parts())
+    })
 }
 
 fn refusal(folder: &Path, cause: &io::Error) -> String {

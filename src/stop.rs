@@ -1,40 +1,70 @@
 //! Being asked to stop: Ctrl-C, or a scheduler's SIGTERM.
 //!
 //! Long work [`listen`]s once and looks at [`asked`] between its parts. What it has finished by then
-//! is whole, and it ends with [`Error::stopped`](crate::error::Error::stopped).
+//! is whole, and it ends with [`Error::stopped`](crate::error::Error::stopped). Other work
+//! [ends at once](end_at_once).
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::thread;
 
 use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::output::forget_unfinished;
 
-static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
-
-/// As [`listen_for`], for work that can be gone on with wherever it is ended.
-///
-/// # Errors
-/// Those of [`listen_for`].
-pub fn listen() -> Result<()> {
-    listen_for(ErrorKind::Stopped)
-}
+static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// From now on the first SIGINT or SIGTERM only sets what [`asked`] tells, and the second ends the
-/// process at once, as `ended` says. SIGHUP is left as it is, so that `nohup` keeps its meaning.
+/// process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so
+/// that `nohup` keeps its meaning.
 ///
 /// # Errors
 /// The system lets no signals be caught.
-pub fn listen_for(ended: ErrorKind) -> Result<()> {
-    for signal in [SIGINT, SIGTERM] {
-        let status = i32::from(ended.exit_code());
-        // In this order: the first signal finds the flag unset and sets it.
-        flag::register_conditional_shutdown(signal, status, Arc::clone(&ASKED))
-            .and_then(|_| flag::register(signal, Arc::clone(&ASKED)))
-            .map_err(|cause| Error::failed(format!("signals cannot be caught: {cause}")))?;
-    }
-    Ok(())
+pub fn listen(say: impl Fn(Signal) -> ErrorKind + Send + 'static) -> Result<()> {
+    spawn(move || {
+        let signal = match ASKED.swap(true, Ordering::Relaxed) {
+            false => Signal::First,
+            true => Signal::Second,
+        };
+        let kind = say(signal);
+        (signal == Signal::Second).then_some(kind)
+    })
+}
+
+/// From now on a SIGINT or SIGTERM ends the process, for work that has nothing to put in order: `say` is
+/// called, and gives the exit code. Files that are not finished are removed.
+///
+/// # Errors
+/// The system lets no signals be caught.
+pub fn end_at_once(say: impl Fn() -> ErrorKind + Send + 'static) -> Result<()> {
+    spawn(move || Some(say()))
+}
+
+/// Which of the signals that [`listen`] hears.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    First,
+    Second,
+}
+
+/// Calls `heard` at every signal, on a thread of its own, until it gives what the process ends as.
+fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
+    let failed =
+        |cause: std::io::Error| Error::failed(format!("signals cannot be caught: {cause}"));
+    let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(failed)?;
+    let listener = thread::Builder::new().name("signals".into());
+    let listening = listener.spawn(move || {
+        for _ in signals.forever() {
+            if let Some(kind) = heard() {
+                forget_unfinished();
+                // Not by way of the drivers' own ends, which wait for their threads.
+                low_level::exit(kind.exit_code().into());
+            }
+        }
+    });
+    listening.map(drop).map_err(failed)
 }
 
 /// Whether it is time to stop.

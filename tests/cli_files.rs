@@ -3,7 +3,12 @@
 
 mod cli_place;
 
+#[cfg(unix)]
+use std::process::Stdio;
+
 use cli_place::{Place, stderr};
+#[cfg(target_os = "linux")]
+use cli_place::{terminate, wait_until_it_listens};
 
 const REFERENCE: &str = "--device reference --size 16";
 
@@ -188,4 +193,88 @@ fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
     let said = place.refused("phantom vessels -o b.nrrd --size 16 --radius -1", 2);
     assert!(said.contains("radius"), "{said}");
     place.done("phantom sphere -o a.nrrd --size 8");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stopped_command_says_so_and_leaves_no_half_of_a_file() {
+    let place = Place::with_ball();
+    // Each takes longer than this test is patient.
+    let reference = "--device reference --mode mean --size 3000";
+    let lines = [
+        format!("render ball.nrrd -o a.png {reference}"),
+        format!("render ball.nrrd -o a.exr --stats s.json {reference}"),
+        "phantom vessels -o v.nrrd --size 400".to_owned(),
+    ];
+    for line in &lines {
+        let before = place.files();
+        let child = place.command(line).stderr(Stdio::piped()).spawn().unwrap();
+        wait_until_it_listens(&child);
+        terminate(&child);
+        let output = child.wait_with_output().unwrap();
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(75), "{line}: {said}");
+        let stopped = "error: stopped before the end; no file is left half-written\nhint: ";
+        assert!(said.contains(stopped), "{line}: {said}");
+        assert_eq!(place.files(), before, "{line}");
+    }
+    // The control: what nobody stops is written.
+    place.done(&format!("render ball.nrrd -o a.png {REFERENCE}"));
+}
+
+/// Killed where it cannot put anything in order, while it writes an animation.
+#[cfg(unix)]
+#[test]
+fn what_a_killed_run_left_is_removed_by_the_next() {
+    let place = Place::with_ball();
+    std::fs::create_dir(place.path("f")).unwrap();
+    let unfinished = || {
+        let entries = std::fs::read_dir(place.path("f")).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names
+            .filter(|name| name.starts_with(".unfinished-"))
+            .count()
+    };
+    let animation = "orbit ball.nrrd -o f/a.gif --frames 3 --mode mean --size 3000";
+    let mut run = place.command(&format!("{animation} --device reference"));
+    let mut child = run.stderr(Stdio::null()).spawn().unwrap();
+    let began = std::time::Instant::now();
+    while unfinished() == 0 {
+        assert!(began.elapsed().as_secs() < 60);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    // The control: one that is at work keeps its own.
+    place.done(&format!("render ball.nrrd -o f/a.png {REFERENCE}"));
+    assert_eq!(unfinished(), 1);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(unfinished(), 1);
+    place.done(&format!("render ball.nrrd -o f/a.png {REFERENCE}"));
+    assert_eq!(unfinished(), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_link_to_stdout_whose_reader_has_gone_is_no_error() {
+    let place = Place::with_ball();
+    let link = |name: &str, device: &str| {
+        std::os::unix::fs::symlink(device, place.path(name)).unwrap();
+    };
+    link("out.png", "/dev/stdout");
+    let line = format!("render ball.nrrd -o out.png {REFERENCE}");
+    let mut run = place.command(&line);
+    let mut child = run
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    // The controls: one that reads gets the picture; a device that takes nothing is an error.
+    let output = place.run(&line);
+    assert!(output.status.success() && output.stdout.starts_with(b"\x89PNG"));
+    link("full.png", "/dev/full");
+    let output = place.run(&format!("render ball.nrrd -o full.png {REFERENCE}"));
+    assert_eq!(output.status.code(), Some(74), "{}", stderr(&output));
 }

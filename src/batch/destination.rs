@@ -1,5 +1,6 @@
 //! Where frames go: a picture each, or one animation.
 
+use std::iter::Peekable;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::frame::{self, Animation, Encoding, Frame, Reel, is_whole};
 
-use super::FrameNames;
+use super::{FrameNames, KeptFrames};
 
 /// A frame on its way to its file.
 pub struct Shot<T> {
@@ -38,7 +39,12 @@ pub enum Destination {
         encoding: Encoding,
     },
     /// All frames to one file.
-    Animation { path: PathBuf, animation: Animation },
+    Animation {
+        path: PathBuf,
+        animation: Animation,
+        /// Where they are until the file is whole; nowhere where the file is a device or a pipe.
+        kept: Option<KeptFrames>,
+    },
 }
 
 /// What a frame depends on beside its scene. Pictures carry it, so that no frame of another volume,
@@ -82,11 +88,11 @@ impl Destination {
     pub fn tells_what_is_there(&self) -> bool {
         match self {
             Self::Pictures { encoding, .. } => encoding.format.carries_metadata(),
-            Self::Animation { .. } => false,
+            Self::Animation { kept, .. } => kept.is_some(),
         }
     }
 
-    /// Makes the folder of a sequence where there is none.
+    /// Makes the folder of a sequence, or of an animation's kept frames, where there is none.
     ///
     /// # Errors
     /// It cannot be made.
@@ -96,6 +102,9 @@ impl Destination {
                 std::fs::create_dir_all(names.folder())
                     .map_err(|cause| Error::writing(names.folder(), "make the folder", &cause))
             }
+            Self::Animation {
+                kept: Some(kept), ..
+            } => kept.make_folder(),
             _ => Ok(()),
         }
     }
@@ -106,16 +115,19 @@ impl Destination {
             Self::Pictures { names, encoding } => {
                 is_whole(&names.path(index), size, encoding, &from.metadata(scene))
             }
-            Self::Animation { .. } => false,
+            Self::Animation { kept, .. } => {
+                (kept.as_ref()).is_some_and(|kept| kept.holds(index, size, &from.metadata(scene)))
+            }
         }
     }
 
-    /// Writes frames as they come, every picture whole or not at all, an animation likewise.
-    /// `reel` is what comes; a picture carries its own scene and `from`, an animation `scene` and
-    /// `from`.
+    /// Writes frames as they come, every picture whole or not at all, an animation likewise: of the
+    /// `reel`'s frames it takes those that do not come from where they are kept. A picture carries its
+    /// own scene and `from`, an animation `scene` and `from`.
     ///
     /// # Errors
-    /// The first error among `shots`, the pictures before it being written; what cannot be written.
+    /// The first error among `shots`, the pictures before it being written, or kept beside an animation;
+    /// what cannot be written.
     pub fn write<T>(
         &self,
         reel: Reel,
@@ -143,34 +155,70 @@ impl Destination {
                     });
                 }
             }
-            Self::Animation { path, animation } => {
-                let metadata = from.metadata(scene);
-                let mut handed: Option<Instant> = None;
-                let mut frames = std::iter::from_fn(|| {
-                    settle(&mut written, handed.take());
-                    let shot = shots.next();
-                    handed = Some(Instant::now());
-                    Some(shot?.map(|shot| {
-                        written.push(Written {
-                            index: shot.index,
-                            about: shot.about,
-                            encode_ms: 0.0,
-                        });
-                        shot.frame
-                    }))
-                });
-                animation.write(path, reel, &metadata, &mut frames)?;
-                settle(&mut written, handed);
+            Self::Animation {
+                path,
+                animation,
+                kept,
+            } => {
+                let mut joined = Joined {
+                    kept: kept.as_ref(),
+                    from,
+                    shots: shots.peekable(),
+                    written: &mut written,
+                    handed: None,
+                };
+                let mut frames = (0..reel.frames).map_while(|index| joined.frame(index));
+                animation.write(path, reel, &from.metadata(scene), &mut frames)?;
+                joined.settle();
+                if let Some(kept) = kept {
+                    kept.remove();
+                }
             }
         }
         Ok(written)
     }
 }
 
-/// Adds to the last frame's encoding the time since it was handed over.
-fn settle<T>(written: &mut [Written<T>], handed: Option<Instant>) {
-    if let (Some(handed), Some(last)) = (handed, written.last_mut()) {
-        last.encode_ms += ms_since(handed);
+/// All frames of an animation in order: those that come, which are kept on their way, and between them
+/// those that are kept already.
+struct Joined<'a, T, I: Iterator<Item = Result<Shot<T>>>> {
+    kept: Option<&'a KeptFrames>,
+    from: &'a Provenance,
+    shots: Peekable<I>,
+    written: &'a mut Vec<Written<T>>,
+    /// When the last of those that came was handed to the encoder.
+    handed: Option<Instant>,
+}
+
+impl<T, I: Iterator<Item = Result<Shot<T>>>> Joined<'_, T, I> {
+    /// `None`: it neither comes nor is kept.
+    fn frame(&mut self, index: u32) -> Option<Result<Frame>> {
+        self.settle();
+        let comes = |shot: &Result<Shot<T>>| !matches!(shot, Ok(shot) if shot.index != index);
+        match self.shots.next_if(comes) {
+            Some(shot) => Some(shot.and_then(|shot| self.take(shot))),
+            None => Some(self.kept?.read(index)),
+        }
+    }
+
+    fn take(&mut self, shot: Shot<T>) -> Result<Frame> {
+        self.handed = Some(Instant::now());
+        if let Some(kept) = self.kept {
+            kept.keep(shot.index, &shot.frame, &self.from.metadata(&shot.scene))?;
+        }
+        self.written.push(Written {
+            index: shot.index,
+            about: shot.about,
+            encode_ms: 0.0,
+        });
+        Ok(shot.frame)
+    }
+
+    /// Adds to the encoding of the last one that came the time since it was handed over.
+    fn settle(&mut self) {
+        if let (Some(handed), Some(last)) = (self.handed.take(), self.written.last_mut()) {
+            last.encode_ms += ms_since(handed);
+        }
     }
 }
 

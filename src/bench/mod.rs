@@ -64,6 +64,8 @@ pub struct Bench<'a> {
     pub specimens: Vec<Specimen>,
     /// How many rays, where the experiment counts rays and the user said so.
     pub rays: Option<u64>,
+    /// What decides them, where the experiment counts rays and the user said so.
+    pub seed: Option<u64>,
     /// How often each setting is timed, where the experiment leaves it to the user and the user said
     /// so.
     pub frames: Option<u32>,
@@ -96,6 +98,7 @@ impl Bench<'_> {
             ("effort", self.effort.name().into()),
             ("protocol", told(self.protocol.map(|one| one.to_string()))),
             ("rays", told(self.rays.map(|rays| rays.to_string()))),
+            ("seed", told(self.seed.map(|seed| seed.to_string()))),
             ("frames", told(self.frames.map(|frames| frames.to_string()))),
             ("peer", self.peer.clone().unwrap_or_else(|| "none".into())),
             ("volumes", volumes.collect::<Vec<_>>().join("; ")),
@@ -270,7 +273,7 @@ pub struct Experiment {
     pub about: &'static str,
     /// Whether [`Bench::specimens`] are looked at.
     pub takes_volumes: bool,
-    /// Whether [`Bench::rays`] is.
+    /// Whether [`Bench::rays`] and [`Bench::seed`] are.
     pub counts_rays: bool,
     /// Whether the protocol under which frames are timed is.
     pub times_frames: bool,

@@ -5,19 +5,20 @@ use std::path::Path;
 use clap::builder::StyledStr;
 
 use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::progress::Progress;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::one_or_more;
 use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
-use crate::stop;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
+use super::phantom::Seed;
 use super::progress::Bars;
 use super::repeat::command_line;
 use super::scene::SceneArgument;
+use super::stopping;
 use super::terminal::{message, note, to_stdout};
 
 /// Measure the renderer: speed against error, as a table
@@ -62,6 +63,10 @@ group! {
         /// many with --full]
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         rays: Count<u64>,
+
+        /// Decides the volumes and the rays of the experiment rays [default: 4]
+        #[arg(long, value_name = "S", allow_hyphen_values = true)]
+        seed: Seed,
 
         /// Frames of which each mode is timed in the experiment speed [default: as many as take it
         /// about three seconds, 5 to 41]
@@ -151,9 +156,14 @@ impl BenchArguments {
                 "the experiment '{name}' takes no volumes: it makes its own"
             )));
         }
-        if options.rays.is_some() && !experiment.counts_rays {
+        let aims = [
+            ("--rays", options.rays.is_some()),
+            ("--seed", options.seed.is_some()),
+        ];
+        if let Some((flag, _)) = (aims.iter()).find(|(_, given)| *given && !experiment.counts_rays)
+        {
             return Err(Error::usage(format!(
-                "'--rays' has no effect in the experiment '{name}'"
+                "'{flag}' has no effect in the experiment '{name}'"
             )));
         }
         if options.protocol.is_some() && !experiment.times_frames {
@@ -187,9 +197,9 @@ impl BenchArguments {
             (false, false) => Effort::default(),
         };
         if options.output.is_some() {
-            // Before the device is opened: OpenCL drivers catch signals too, and end the process by
-            // their own unless they were there last.
-            stop::listen()?;
+            stopping::between_parts("unit of work", ErrorKind::Stopped)?;
+        } else {
+            stopping::at_once("without --output nothing is kept")?;
         }
         let Engine::Device {
             device,
@@ -221,6 +231,7 @@ impl BenchArguments {
             protocol: options.protocol,
             specimens,
             rays: options.rays.map(Count::get),
+            seed: options.seed.map(|Seed(seed)| seed),
             frames: options.frames.map(Count::get),
             peer: options.peer,
             progress: &bars,

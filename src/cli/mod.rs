@@ -16,6 +16,7 @@ mod render;
 mod repeat;
 mod scene;
 mod stats;
+mod stopping;
 mod terminal;
 mod tolerance;
 
@@ -56,6 +57,15 @@ enum Command {
 
 impl Command {
     fn run(self) -> Result<()> {
+        // Before a device is opened: OpenCL drivers catch signals too, and end the process by their own
+        // unless they were there last. An orbit and a bench listen for themselves.
+        match &self {
+            Self::Orbit(_) | Self::Bench(_) => {}
+            Self::Compare(_) => stopping::at_once(
+                "the results so far are in its folder, and the reference's pictures are kept",
+            )?,
+            _ => stopping::at_once("no file is left half-written")?,
+        }
         match self {
             Self::Render(arguments) => arguments.run(),
             Self::Orbit(arguments) => arguments.run(),

@@ -319,7 +319,7 @@ impl FromStr for VoxelName {
 
 /// `--seed`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seed(u64);
+pub struct Seed(pub u64);
 
 impl FromStr for Seed {
     type Err = Error;

@@ -8,7 +8,7 @@ use ::png::{ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderi
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{BitDepth, Frame, quantize};
+use super::{BitDepth, Frame, Wanted, quantize};
 
 pub(super) fn encode(
     out: &mut impl Write,
@@ -71,6 +71,39 @@ pub(super) fn rgb_encoder<'a, W: Write>(
         encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned())?;
     }
     Ok(encoder)
+}
+
+/// A picture of 8 bits a channel as it is displayed: one that is written again comes out the same.
+///
+/// # Errors
+/// A file that cannot be read, is damaged, or is another kind of PNG.
+pub fn read_display(path: &Path) -> Result<Frame> {
+    let unreadable = |cause: &dyn std::fmt::Display| {
+        Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
+    };
+    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
+    let mut reader = Decoder::new(BufReader::new(file))
+        .read_info()
+        .map_err(|cause| unreadable(&cause))?;
+    let info = reader.info();
+    if (info.color_type, info.bit_depth) != (ColorType::Rgb, ::png::BitDepth::Eight) {
+        return Err(unreadable(&"it is not RGB of 8 bits"));
+    }
+    let size = ImageSize::new(info.width, info.height)?;
+    let mut rgb = vec![0; 3 * size.pixels()];
+    reader
+        .next_frame(&mut rgb)
+        .map_err(|cause| unreadable(&cause))?;
+    let level = |byte: u8| f32::from(byte) / f32::from(u8::MAX);
+    let display = rgb.as_chunks::<3>().0.iter();
+    Ok(Frame {
+        display: Some(
+            display
+                .map(|&[r, g, b]| [level(r), level(g), level(b), 1.0])
+                .collect(),
+        ),
+        ..Frame::blank(size, Wanted::DISPLAY)
+    })
 }
 
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.

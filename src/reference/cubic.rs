@@ -2,37 +2,42 @@
 
 use smallvec::{SmallVec, smallvec};
 
-/// `c[0] + c[1]·s + c[2]·s² + c[3]·s³`, s from 0 to 1 along a segment.
+/// By its Bézier ordinates, s from 0 to 1 along a segment: every value is a mean of them with weights
+/// from 0 to 1. So it never leaves their range, and an ordinate whose weight is small disturbs it little,
+/// however large it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic(pub [f64; 4]);
 
 /// Parameters in ascending order, from 0 to 1.
 pub type Parameters = SmallVec<[f64; 8]>;
 
+/// From `a` to `b`, never outside their range: from the nearer end, so that the rounding of b − a cannot
+/// carry it past the other.
+fn lerp(a: f64, b: f64, t: f64) -> f64 {
+    if t < 0.5 {
+        a + (b - a) * t
+    } else {
+        b - (b - a) * (1.0 - t)
+    }
+}
+
 impl Cubic {
-    /// The trilinear interpolant of `corners` (x fastest) along the line from `p` to `p + d` in the
-    /// cell's own coordinates. Constant corners give an exactly constant polynomial.
-    pub fn along(corners: &[f64; 8], p: [f64; 3], d: [f64; 3]) -> Self {
-        let line = |at: usize| {
-            let (a, b) = (corners[at], corners[at + 1]);
-            [a + (b - a) * p[0], (b - a) * d[0]]
+    /// The trilinear interpolant of `corners` (x fastest) along the line from `p` to `q` in the
+    /// cell's own coordinates, 0 to 1. Never outside the corners' range; constant corners give an exactly
+    /// constant polynomial.
+    pub fn along(corners: &[f64; 8], p: [f64; 3], q: [f64; 3]) -> Self {
+        // The polar form: each axis takes its coordinate from one end or the other.
+        let ends = [p, q];
+        let at = |x: usize, y: usize, z: usize| {
+            let line = |at: usize| lerp(corners[at], corners[at + 1], ends[x][0]);
+            let square = |at: usize| lerp(line(at), line(at + 2), ends[y][1]);
+            lerp(square(0), square(4), ends[z][2])
         };
-        let square = |at: usize| {
-            let (a, b) = (line(at), line(at + 2));
-            let e = [b[0] - a[0], b[1] - a[1]];
-            [
-                a[0] + e[0] * p[1],
-                a[1] + e[1] * p[1] + e[0] * d[1],
-                e[1] * d[1],
-            ]
-        };
-        let (a, b) = (square(0), square(4));
-        let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         Self([
-            a[0] + e[0] * p[2],
-            a[1] + e[1] * p[2] + e[0] * d[2],
-            a[2] + e[2] * p[2] + e[1] * d[2],
-            e[2] * d[2],
+            at(0, 0, 0),
+            mean_of_three([at(1, 0, 0), at(0, 1, 0), at(0, 0, 1)]),
+            mean_of_three([at(0, 1, 1), at(1, 0, 1), at(1, 1, 0)]),
+            at(1, 1, 1),
         ])
     }
 
@@ -42,14 +47,23 @@ impl Cubic {
         Self([0, 1, 2, 3].map(coefficient))
     }
 
+    /// By de Casteljau's algorithm.
     pub fn at(&self, s: f64) -> f64 {
         let [a, b, c, d] = self.0;
-        ((d * s + c) * s + b) * s + a
+        let [a, b, c] = [lerp(a, b, s), lerp(b, c, s), lerp(c, d, s)];
+        let [a, b] = [lerp(a, b, s), lerp(b, c, s)];
+        lerp(a, b, s)
     }
 
     fn slope(&self, s: f64) -> f64 {
-        let [_, b, c, d] = self.0;
-        (3.0 * d * s + 2.0 * c) * s + b
+        let [a, b, c] = self.differences();
+        3.0 * lerp(lerp(a, b, s), lerp(b, c, s), s)
+    }
+
+    /// A third of the derivative's Bézier ordinates.
+    fn differences(&self) -> [f64; 3] {
+        let [a, b, c, d] = self.0;
+        [b - a, c - b, d - c]
     }
 
     /// The Bézier ordinates of the part between two parameters: their hull holds its values.
@@ -66,18 +80,18 @@ impl Cubic {
 
     /// The mean over [0, 1].
     pub fn mean(&self) -> f64 {
-        let [a, b, c, d] = self.0;
-        a + b / 2.0 + c / 3.0 + d / 4.0
+        self.0.iter().sum::<f64>() / 4.0
     }
 
     /// Ends of the pieces on which the polynomial is monotone: 0, its turning points, 1.
     pub fn monotone_ends(&self) -> Parameters {
         let mut ends: Parameters = smallvec![0.0];
-        let [_, b, c, d] = self.0;
-        let scale = b.abs().max(2.0 * c.abs()).max(3.0 * d.abs());
+        let differences = self.differences();
+        let scale = differences.iter().fold(0.0, |most, d| d.abs().max(most));
         if scale > 0.0 {
             // The derivative k2·s² + k1·s + k0, by the form without cancellation.
-            let (k0, k1, k2) = (b / scale, 2.0 * c / scale, 3.0 * d / scale);
+            let [a, b, c] = differences.map(|d| d / scale);
+            let (k0, k1, k2) = (a, 2.0 * (b - a), (a - b) + (c - b));
             let discriminant = k1 * k1 - 4.0 * k2 * k0;
             if discriminant > 0.0 {
                 let q = -0.5 * (k1 + discriminant.sqrt().copysign(k1));
@@ -139,13 +153,26 @@ impl Cubic {
     }
 }
 
+/// Within their range, too.
+fn mean_of_three(values: [f64; 3]) -> f64 {
+    let [a, b, c] = values;
+    let mean = (a + b + c) / 3.0;
+    mean.clamp(a.min(b).min(c), a.max(b).max(c))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// a + b·s + c·s² + d·s³
+    fn power([a, b, c, d]: [f64; 4]) -> Cubic {
+        let third = b / 3.0;
+        Cubic([a, a + third, a + 2.0 * third + c / 3.0, a + b + c + d])
+    }
+
     /// (s − a)(s − b)(s − c) · k
     fn with_roots([a, b, c]: [f64; 3], k: f64) -> Cubic {
-        Cubic([-a * b * c, a * b + b * c + c * a, -(a + b + c), 1.0].map(|x| x * k))
+        power([-a * b * c, a * b + b * c + c * a, -(a + b + c), 1.0].map(|x| x * k))
     }
 
     #[test]
@@ -168,7 +195,7 @@ mod tests {
     fn roots_a_billionth_apart_are_two_and_none_when_they_miss() {
         // Touches 1 at s = 0.4 but for ±1e-9.
         for (miss, count) in [(1e-9, 0), (-1e-9, 2)] {
-            let c = Cubic([1.0 - 0.16 - miss, 0.8, -1.0, 0.0]);
+            let c = power([1.0 - 0.16 - miss, 0.8, -1.0, 0.0]);
             let mut found = SmallVec::new();
             c.push_crossings(1.0, &mut found);
             assert_eq!(found.len(), count);
@@ -177,7 +204,7 @@ mod tests {
 
     #[test]
     fn a_triple_root_and_a_flat_start_converge() {
-        for cubic in [with_roots([0.3; 3], 1.0), Cubic([-1e-30, 0.0, 0.0, 1.0])] {
+        for cubic in [with_roots([0.3; 3], 1.0), power([-1e-30, 0.0, 0.0, 1.0])] {
             let root = cubic.crossing(0.0, 0.0, 1.0);
             assert!(cubic.at(root).abs() < 1e-16);
         }
@@ -186,14 +213,14 @@ mod tests {
     #[test]
     fn turning_points_survive_cancellation() {
         // The derivative's roots are 1e-9 and 1e9.
-        let c = Cubic([0.0, 1.0, -0.5 * (1e9 + 1e-9), 1.0 / 3.0]);
+        let c = power([0.0, 1.0, -0.5 * (1e9 + 1e-9), 1.0 / 3.0]);
         let ends = c.monotone_ends();
         assert_eq!(ends.len(), 3);
         assert!((ends[1] - 1e-9).abs() < 1e-20);
-        assert_eq!(Cubic([7.0, 0.0, 0.0, 0.0]).monotone_ends().len(), 2);
+        assert_eq!(Cubic([7.0; 4]).monotone_ends().len(), 2);
         // They are a ten-thousandth apart; one sign further there are none.
         for (apart, count) in [(2.5e-9, 4), (-2.5e-9, 2)] {
-            let c = Cubic([0.0, 0.25 - apart, -0.5, 1.0 / 3.0]);
+            let c = power([0.0, 0.25 - apart, -0.5, 1.0 / 3.0]);
             assert_eq!(c.monotone_ends().len(), count);
         }
     }
@@ -220,7 +247,7 @@ mod tests {
     fn the_cubic_along_a_line_is_the_trilinear_field() {
         let corners = [1.0, 4.0, -2.0, 0.5, 3.0, 8.0, -7.0, 2.0];
         let (p, d) = ([0.1, 0.9, 0.3], [0.8, -0.7, 0.6]);
-        let cubic = Cubic::along(&corners, p, d);
+        let cubic = Cubic::along(&corners, p, std::array::from_fn(|a| p[a] + d[a]));
         for s in [0.0, 0.25, 0.7, 1.0] {
             let q: [f64; 3] = std::array::from_fn(|a| p[a] + d[a] * s);
             let mut value = 0.0;
@@ -231,7 +258,53 @@ mod tests {
             assert!((cubic.at(s) - value).abs() < 1e-13);
             assert!((cubic.at(s) - value - 1e-6).abs() > 1e-13);
         }
-        let flat = Cubic::along(&[0.1; 8], p, d);
-        assert_eq!(flat.0, [0.1, 0.0, 0.0, 0.0]);
+        let flat = Cubic::along(&[0.1; 8], p, [0.9, 0.2, 0.9]);
+        assert_eq!(flat.0, [0.1; 4]);
+        assert_eq!(flat.at(0.37), 0.1);
+    }
+
+    #[test]
+    fn no_value_leaves_the_corners_range_however_far_they_are_apart() {
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let kinds = [1e-30, 1e30, 3e-30, -1e30, 5.0, 0.1];
+        let mut powers_leave = 0;
+        for _ in 0..20_000 {
+            let first = (random() * 6.0) as usize;
+            let corners: [f64; 8] = [(); 8].map(|()| {
+                kinds[if random() < 0.5 {
+                    first
+                } else {
+                    (random() * 6.0) as usize
+                }]
+            });
+            let low = corners.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+            let high = corners.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+            let [p, q] = [(); 2].map(|()| [random(), random(), random()]);
+            let cubic = Cubic::along(&corners, p, q);
+            let mut places: Vec<f64> = cubic.monotone_ends().to_vec();
+            places.extend([random(), random(), random()]);
+            for s in places {
+                assert!(
+                    (low..=high).contains(&cubic.at(s)),
+                    "{corners:?} {p:?} {q:?} {s}"
+                );
+                // The control: by powers of s it does.
+                let [a, b, c, d] = cubic.0;
+                let [k1, k2, k3] = [
+                    3.0 * (b - a),
+                    3.0 * (a - 2.0 * b + c),
+                    d - a + 3.0 * (b - c),
+                ];
+                let by_powers = ((k3 * s + k2) * s + k1) * s + a;
+                powers_leave += usize::from(!(low..=high).contains(&by_powers));
+            }
+        }
+        assert!(powers_leave > 100, "{powers_leave}");
     }
 }

@@ -47,10 +47,11 @@ impl<'a, T: Voxel> Field<'a, T> {
 
     /// Φ along a segment, from its box's corners.
     pub fn along(corners: &[f64; 8], segment: &Segment) -> Cubic {
-        let local = |p: f64, axis: usize| p - segment.cell[axis] as f64;
+        // Rounding may leave a point a hair outside its box.
+        let local = |p: f64, axis: usize| (p - segment.cell[axis] as f64).clamp(0.0, 1.0);
         let p: [f64; 3] = std::array::from_fn(|a| local(segment.p0[a], a));
-        let d: [f64; 3] = std::array::from_fn(|a| segment.p1[a] - segment.p0[a]);
-        Cubic::along(corners, p, d)
+        let q: [f64; 3] = std::array::from_fn(|a| local(segment.p1[a], a));
+        Cubic::along(corners, p, q)
     }
 
     /// Φ along a segment moved by whole voxels along an axis, clamped to the domain: past the last

@@ -47,17 +47,20 @@ pub fn first_crossing<T: Voxel>(
     let mut inside = None;
     for segment in Walk::new(field.lattice, interval) {
         walked += 1;
-        let corners = field.corners(segment.cell);
+        // Less the iso value: on which side a corner lies is exact, and where all lie on one side no
+        // rounding makes a crossing.
+        let corners = field.corners(segment.cell).map(|value| value - iso);
         let (low, high) = bounds(&corners);
-        if inside == Some(false) && high < iso || inside == Some(true) && low >= iso {
+        if inside == Some(false) && high < 0.0 || inside == Some(true) && low >= 0.0 {
             continue;
         }
-        let phi = Field::<T>::along(&corners, &segment);
-        let start = phi.at(0.0);
-        let inside = *inside.get_or_insert(start >= iso);
+        let above = Field::<T>::along(&corners, &segment);
+        let start_in = above.at(0.0) >= 0.0;
+        let inside = *inside.get_or_insert(start_in);
+        let value = |s: f64| Field::<T>::along(&field.corners(segment.cell), &segment).at(s);
         let crossing = |s: f64| Crossing {
             at_mm: segment.at_mm(s),
-            value: phi.at(s),
+            value: value(s),
             gradient: field
                 .gradient(&segment, gradient)
                 .map(|component| component.at(s)),
@@ -66,20 +69,20 @@ pub fn first_crossing<T: Voxel>(
         if walked == 1 && inside && caps && interval.entry.is_some() {
             let cap = Crossing {
                 at_mm: 0.0,
-                value: start,
+                value: value(0.0),
                 gradient: [0.0; 3],
                 cap: interval.entry,
             };
             return (Some(cap), walked);
         }
         // A wall of the nearest filter; or a level within the last bit of Φ at a cell face.
-        if (start >= iso) != inside {
+        if start_in != inside {
             return (Some(crossing(0.0)), walked);
         }
-        let ends = phi.monotone_ends();
+        let ends = above.monotone_ends();
         for ends in ends.windows(2) {
-            if (phi.at(ends[1]) >= iso) != inside {
-                let s = phi.crossing(iso, ends[0], ends[1]);
+            if (above.at(ends[1]) >= 0.0) != inside {
+                let s = above.crossing(0.0, ends[0], ends[1]);
                 return (Some(crossing(s)), walked);
             }
         }

@@ -102,7 +102,7 @@ fn without_ffmpeg_a_video_is_refused_before_any_work() {
     for name in ["a.mp4", "a.webm"] {
         let output = run(name);
         let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert_eq!(output.status.code(), Some(74), "{said}");
         assert!(
             said.contains("ffmpeg") && said.contains("hint: install it"),
             "{said}"

@@ -4,7 +4,9 @@
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -103,4 +105,29 @@ pub fn pixels(path: &Path) -> Vec<[f64; 3]> {
 
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Asks a process to end, as Ctrl-C or a scheduler does.
+#[cfg(unix)]
+pub fn terminate(child: &Child) {
+    let mut kill = Command::new("kill");
+    kill.args(["-TERM", &child.id().to_string()]);
+    assert!(kill.status().unwrap().success());
+}
+
+/// Waits until a process catches SIGTERM.
+#[cfg(target_os = "linux")]
+pub fn wait_until_it_listens(child: &Child) {
+    const SIGTERM: u64 = 15;
+    let began = Instant::now();
+    loop {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let caught = u64::from_str_radix(caught.unwrap().trim(), 16).unwrap();
+        if caught >> (SIGTERM - 1) & 1 == 1 {
+            return;
+        }
+        assert!(began.elapsed() < Duration::from_secs(60));
+        sleep(Duration::from_millis(1));
+    }
 }

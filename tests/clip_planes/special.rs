@@ -1,6 +1,9 @@
 //! Planes along the rays, through the eye, redundant, contradictory, many, of any length, and far
 //! from the origin.
 
+use angioray::bench::Judge;
+use angioray::frame::Kind;
+
 use super::*;
 
 /// A cube from −4 to 4 mm along each axis.
@@ -210,4 +213,63 @@ fn a_plane_beyond_all_numbers_keeps_all_or_nothing() {
             assert_eq!(rows_seen(frame), vec![seen; 8], "{}", engine.name);
         }
     }
+}
+
+/// Planes that cut a hair before the walls between cells, where a volume of few values lies on the iso
+/// value itself: what the certificate proves of a clipped ray is so.
+#[test]
+fn what_is_proven_of_clipped_rays_is_so() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = common::volume_of([12, 12, 12], |x, y, z| (4.0 * common::hash(x, y, z)) as u8);
+    let (mut wrong, mut proven, mut differing, mut rays) = (0, 0, 0, 0);
+    for (number, caps) in (2..10).flat_map(|number| [(number, true), (number, false)]) {
+        let at = DVec3::splat(f64::from(number));
+        // The last number of single precision before the wall, and what it is exactly.
+        let offset = f64::from((number as f32).next_down());
+        let planes = [
+            plane(DVec3::X, -offset),
+            plane(DVec3::NEG_X, offset),
+            plane_at(at, DVec3::new(1.0, -1.0, 0.0)),
+            plane_at(at, DVec3::new(3.0, 1e-4, 2e-4)),
+            plane_at(at, DVec3::new(-1.0, 2.0, -2.0)),
+        ];
+        for plane in planes {
+            for toward_eye in [DVec3::NEG_X, DVec3::X, common::OBLIQUE] {
+                let picture = Picture::Surface {
+                    iso: 2.0,
+                    caps,
+                    refine: Refine::default(),
+                    color: Rgb([0.8; 3]),
+                    phong: None,
+                };
+                let size = ImageSize::new(24, 24).unwrap();
+                let view = (common::camera(&volume, toward_eye), size);
+                let mut scene = scene(&volume, picture, view, &[plane]);
+                scene.sampling.method = SamplingMethod::Exact;
+                let judge = Judge::new(&volume, &scene).unwrap();
+                let frame = on_device(&device, &volume, std::slice::from_ref(&scene)).remove(0);
+                let kinds = frame.kind.as_ref().unwrap();
+                let certificates = frame.certificate.as_ref().unwrap();
+                for (pixel, (&kind, &certificate)) in kinds.iter().zip(certificates).enumerate() {
+                    let [x, y] = [pixel % 24, pixel / 24].map(|at| at as f64 + 0.5);
+                    let ray = scene.camera.ray(size, x, y);
+                    let truth = judge.truth(ray);
+                    let hits = truth.kind != Kind::Nothing;
+                    let says = [Some(false), Some(true), None][certificate as usize];
+                    rays += 1;
+                    differing += usize::from(hits != (kind != Kind::Nothing as u32));
+                    proven += usize::from(says.is_some());
+                    let is_wrong = says.is_some_and(|says| says != hits);
+                    wrong += usize::from(is_wrong && judge.is_certain(ray, truth));
+                }
+            }
+        }
+    }
+    println!("{rays} rays, {proven} proven, {differing} differ");
+    assert_eq!(wrong, 0);
+    // The controls: rounding does decide some of them, and most are proven all the same.
+    assert!(differing > 20, "{differing}");
+    assert!(proven * 2 > rays, "{proven} of {rays}");
 }

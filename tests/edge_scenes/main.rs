@@ -5,6 +5,7 @@
 mod common;
 mod extremes;
 mod grid;
+mod rounding;
 mod values;
 
 use angioray::extent::ImageSize;

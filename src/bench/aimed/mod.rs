@@ -164,11 +164,26 @@ pub fn run(device: &Device, seed: u64, count: u64, progress: &dyn Progress) -> R
 /// The device fails.
 pub fn at_target(caster: &mut RayCaster, seed: u64, number: u64, count: u64) -> Result<Report> {
     let target = target(seed, number as u32)?;
-    let octree = Octree::build(&target.volume, Leaf::new(4)?, &Silent)?;
     let aimed = rays(&target, seed.wrapping_add(number), count as usize);
+    Ok(answers(caster, &target, number, &aimed)?.0)
+}
+
+/// Casts these rays at a target, which `number` names in the report, and judges them: the report, and
+/// what the device answered to each.
+///
+/// # Errors
+/// The device fails.
+pub fn answers(
+    caster: &mut RayCaster,
+    target: &Target,
+    number: u64,
+    aimed: &[AimedRay],
+) -> Result<(Report, Vec<FirstCrossing>)> {
+    let octree = Octree::build(&target.volume, Leaf::new(4)?, &Silent)?;
     let pairs: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
     let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &pairs)?;
-    judge(&target, number, &aimed, &found)
+    let report = judge(target, number, aimed, &found)?;
+    Ok((report, found))
 }
 
 /// The verdicts on one target's rays.

@@ -17,7 +17,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// Decides the volumes and the rays.
+/// Decides the volumes and the rays, unless the user chose another.
 const SEED: u64 = 4;
 
 const COLUMNS: [(&str, &str, Shown); 10] = [
@@ -43,11 +43,12 @@ fn count(bench: &Bench) -> u64 {
 
 fn run(bench: &Bench) -> Result<Outcome> {
     let mut report = Report::default();
+    let seed = bench.seed.unwrap_or(SEED);
     let mut caster = RayCaster::new(bench.device, bench.options.lanes);
     bench.progress.begin("aimed rays", count(bench));
     for (number, rays) in aimed::targets(count(bench)) {
         let at_target = bench.unit(&format!("target {number}"), || {
-            aimed::at_target(&mut caster, SEED, number, rays)
+            aimed::at_target(&mut caster, seed, number, rays)
         })?;
         report = report.and(at_target);
         bench.progress.advance(rays);

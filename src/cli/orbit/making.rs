@@ -4,7 +4,7 @@ use crate::batch::{Destination, Provenance, Shot, Written, beside};
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Reel, Wanted};
 use crate::progress::{Progress, Silent};
-use crate::scene::{Camera, Orbit};
+use crate::scene::{Camera, Orbit, Scene};
 use crate::stop;
 use crate::tolerance::Choice;
 
@@ -79,7 +79,9 @@ impl Making<'_> {
     /// Anything but a stop between two pictures, which is part of what was made.
     pub fn make(&self, mut orbit: Orbit, missing: &[u32]) -> Result<Made> {
         if missing.is_empty() {
-            return Ok(Made::nothing(orbit, None));
+            let nothing = Made::nothing(orbit, None);
+            self.join(&nothing.orbit)?;
+            return Ok(nothing);
         }
         let check = |chosen| self.check_stop(chosen, 0, missing.len());
         if let Err(stopped) = check(None) {
@@ -110,6 +112,26 @@ impl Making<'_> {
         })
     }
 
+    /// Writes an animation all of whose frames are kept.
+    fn join(&self, orbit: &Orbit) -> Result<()> {
+        let destination = &self.plan.destination;
+        if let Destination::Animation { .. } = destination {
+            let first = orbit.at(0)?;
+            let scene = first.options.to_toml()?;
+            let none = &mut std::iter::empty::<Result<Shot<()>>>();
+            destination.write(self.reel(&first.scene), self.from, &scene, none)?;
+        }
+        Ok(())
+    }
+
+    /// All frames, by the scene of the first.
+    fn reel(&self, first: &Scene) -> Reel {
+        Reel {
+            size: first.size,
+            frames: self.plan.frames.get(),
+        }
+    }
+
     /// What an error bound chooses, where there is one.
     fn choose(&self, orbit: &Orbit, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
         let Some(bound) = self.job.bound else {
@@ -133,7 +155,8 @@ impl Making<'_> {
     }
 
     /// Renders frames one after another, and encodes each beside the rendering of the next. Pictures
-    /// that are there when it is stopped stay; an animation without its end is an error.
+    /// that are there when it is stopped stay; an animation without its end is an error, its frames being
+    /// kept.
     fn write(
         &self,
         orbit: &Orbit,
@@ -143,10 +166,7 @@ impl Making<'_> {
     ) -> Result<(Vec<Written<Taken>>, Option<Error>)> {
         let first = orbit.at(0)?;
         let scene = first.options.to_toml()?;
-        let reel = Reel {
-            size: first.scene.size,
-            frames: missing.len() as u32,
-        };
+        let reel = self.reel(&first.scene);
         let wanted = self.wanted();
         let destination = &self.plan.destination;
         let mut stopped = None;
@@ -189,27 +209,31 @@ impl Making<'_> {
         if !stop::asked() {
             return Ok(());
         }
-        if let Destination::Animation { path, .. } = &self.plan.destination {
-            return Err(Error::failed(format!(
-                "stopped at frame {made} of {of}: {} was not written",
-                path.display()
-            ))
-            .hint("pictures, such as -o frames/%04d.png, can be gone on with after a stop"));
+        let mut told = format!("stopped early: {made} of {of} frames are made");
+        if let Destination::Animation { path, kept, .. } = &self.plan.destination {
+            let path = path.display();
+            told = match kept {
+                Some(kept) => format!(
+                    "{told} and kept in {}; {path} is written when all are there",
+                    kept.folder().display()
+                ),
+                None => format!("{told}, and {path} has got none of them"),
+            };
         }
-        let told = format!("stopped early: {made} of {of} frames are made");
         if self.plan.ended_early() != ErrorKind::Stopped {
-            return Err(
-                Error::failed(told).hint("only .png and .exr can be gone on with, by --resume")
-            );
+            return Err(Error::failed(told)
+                .hint("--resume makes the rest of .png, .exr and animation files only"));
         }
         Err(Error::stopped(told).hint(match (self.job.bound, chosen) {
-            (None, _) => "the same command with --resume goes on".to_owned(),
+            (None, _) => "run the same command with --resume for the rest".to_owned(),
             (Some(_), Some(choice)) => format!(
-                "--resume goes on, with {} instead of --max-error",
+                "run the same command with --resume, and with {} instead of --max-error, for the rest",
                 choice.setting.flags()
             ),
-            (Some(_), None) if made == 0 => "the same command begins anew".to_owned(),
-            (Some(_), None) => "--resume goes on, without --max-error".to_owned(),
+            (Some(_), None) if made == 0 => "run the same command again".to_owned(),
+            (Some(_), None) => {
+                "run the same command with --resume, without --max-error, for the rest".to_owned()
+            }
         }))
     }
 }

@@ -9,12 +9,12 @@ use crate::VERSION;
 use crate::batch::{Destination, Provenance};
 use crate::error::Result;
 use crate::scene::Orbit;
-use crate::stop;
 
 use super::engine::Engine;
 use super::job::JobArguments;
 use super::progress::Bars;
 use super::render::gradient_note;
+use super::stopping;
 use super::terminal::{message, note};
 use making::{Made, Making};
 use options::OrbitOptions;
@@ -33,10 +33,10 @@ use plan::Plan;
   angioray orbit head.nrrd -o frames/%04d.png --frames 360 --resume
   sbatch --array=0-7 --wrap 'angioray orbit head.nrrd -o frames/%04d.png --frames 360 --shard auto'
 
-Stopped by Ctrl-C or SIGTERM it finishes the frame in work; a second one ends it at once. Frames that
-are .png or .exr can be gone on with: it ends with exit code 75, and the same command with --resume
-goes on (where --max-error chose, with the flags that are told then in its place). Other pictures stay
-too, but cannot be gone on with, and an animation is not written: it ends with exit code 1.")]
+Stopped by Ctrl-C or SIGTERM it finishes the frame in work and ends with exit code 75; a second signal
+ends it at once. The same command with --resume makes the rest (where --max-error chose, the flags to give
+in its place are shown). The frames of an animation are kept in a folder beside it, such as head.mp4.frames,
+until it is whole. Pictures other than .png and .exr stay, but cannot be resumed: then the exit code is 1.")]
 pub struct OrbitArguments {
     #[command(flatten)]
     orbit: OrbitOptions,
@@ -51,9 +51,7 @@ impl OrbitArguments {
         let options = self.orbit.over(file.group()?);
         let job = self.job.over(&file)?;
         let plan = Plan::of(options, &job)?;
-        // Before the device is opened: OpenCL drivers catch signals too, and end the process by their
-        // own unless they were there last.
-        stop::listen_for(plan.ended_early())?;
+        stopping::between_parts("frame", plan.ended_early())?;
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
@@ -98,7 +96,13 @@ fn tell(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
         kept => format!(", {kept} were there"),
     };
     let (Some(one), Some(last)) = (written.first(), written.last()) else {
-        message(format_args!("nothing to do{there}"));
+        match &making.plan.destination {
+            Destination::Animation { path, .. } => message(format_args!(
+                "wrote {} of {kept} frames that were there",
+                path.display()
+            )),
+            Destination::Pictures { .. } => message(format_args!("nothing to do{there}")),
+        }
         return Ok(());
     };
     let files = match &making.plan.destination {

@@ -31,7 +31,7 @@ group! {
         fps: FrameRate,
 
         /// Keep frames that are there, whole, of the same scene and volume and by the same device
-        /// (.png and .exr tell), and make the others
+        /// (.png, .exr, and those of an animation that was stopped), and make the others
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on")]
         resume: Switch,

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::batch::{Destination, FrameNames, Shard, ShardChoice};
+use crate::batch::{Destination, FrameNames, KeptFrames, Shard, ShardChoice};
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Animation, AnimationFormat, Encoding, Format};
+use crate::output::becomes_file;
 use crate::scene::{AngleDeg, FilePath, FrameCount, OrbitAxis, Switch};
 
 use super::super::job::Job;
@@ -64,7 +65,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// How a run ends that is stopped before its end: whether it can be gone on with.
+    /// How a run ends that is stopped before its end: whether it can be resumed.
     pub fn ended_early(&self) -> ErrorKind {
         match self.destination.tells_what_is_there() {
             true => ErrorKind::Stopped,
@@ -79,19 +80,22 @@ impl Plan {
             (false, Shard::WHOLE) => return Ok(()),
             (false, _) => "shard",
         };
-        if let Destination::Animation { path, .. } = &self.destination {
-            return Err(Error::usage(format!(
-                "{}: an animation is made in one go: '--{key}' does not go with it",
-                path.display()
-            ))
-            .hint("write pictures, such as -o frames/%04d.png, and join them afterwards"));
-        }
-        if self.resume && !self.destination.tells_what_is_there() {
-            return Err(Error::usage(format!(
-                "{}: such files do not say what scene they are of: '--resume' does not go with them",
-                job.output.path()?.display()
-            ))
-            .hint("write .png or .exr"));
+        match &self.destination {
+            Destination::Animation { path, .. } if self.shard != Shard::WHOLE => {
+                return Err(Error::usage(format!(
+                    "{}: an animation is one file: '--shard' does not go with it",
+                    path.display()
+                ))
+                .hint("write pictures, such as -o frames/%04d.png, and join them afterwards"));
+            }
+            _ if self.resume && !self.destination.tells_what_is_there() => {
+                return Err(Error::usage(format!(
+                    "{}: such files do not say what scene they are of: '--resume' does not go with them",
+                    job.output.path()?.display()
+                ))
+                .hint("write .png, .exr or an animation"));
+            }
+            _ => {}
         }
         if job.bound.is_some() {
             return Err(Error::usage(format!(
@@ -109,12 +113,18 @@ impl Plan {
                 outputs::check_sequence(names, self.frames, inputs, stats)?;
                 stats.map_or(Ok(()), |stats| outputs::check(stats, inputs))
             }
-            Destination::Animation { path, .. } => outputs::Files {
-                picture: path.clone(),
-                encoding: self.encoding.clone(),
-                stats: self.stats.clone(),
+            Destination::Animation { path, kept, .. } => {
+                if let Some(kept) = kept {
+                    let stats = self.stats.as_deref();
+                    outputs::check_sequence(kept.names(), self.frames, inputs, stats)?;
+                }
+                outputs::Files {
+                    picture: path.clone(),
+                    encoding: self.encoding.clone(),
+                    stats: self.stats.clone(),
+                }
+                .check(inputs)
             }
-            .check(inputs),
         }
     }
 }
@@ -147,8 +157,13 @@ fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encodi
         rate: options.fps.unwrap_or_default(),
     };
     animation.check()?;
-    let path = path.to_owned();
-    Ok((Destination::Animation { path, animation }, encoding))
+    let kept = becomes_file(path).then(|| KeptFrames::of(path));
+    let animation = Destination::Animation {
+        path: path.to_owned(),
+        animation,
+        kept: kept.transpose()?,
+    };
+    Ok((animation, encoding))
 }
 
 /// The statistics of a shard, whose processes all have the same flags.

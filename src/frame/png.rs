@@ -8,7 +8,7 @@ use ::png::{ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderi
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{BitDepth, Frame, quantize};
+use super::{BitDepth, Encoding, Format, Frame, quantize};
 
 pub(super) fn encode(
     out: &mut impl Write,
@@ -73,11 +73,29 @@ pub(super) fn rgb_encoder<'a, W: Write>(
     Ok(encoder)
 }
 
+/// The bits per channel.
+pub(super) fn read_encoding(path: &Path) -> Result<Encoding> {
+    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
+    let reader = Decoder::new(BufReader::new(file))
+        .read_info()
+        .map_err(|cause| unreadable(path, &cause))?;
+    let bit_depth = match reader.info().bit_depth {
+        ::png::BitDepth::Sixteen => BitDepth::Sixteen,
+        _ => BitDepth::Eight,
+    };
+    Ok(Encoding {
+        bit_depth,
+        ..Encoding::new(Format::Png)
+    })
+}
+
+fn unreadable(path: &Path, cause: &::png::DecodingError) -> Error {
+    Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
+}
+
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.
 pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
-    let unreadable = |cause: ::png::DecodingError| {
-        Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
-    };
+    let unreadable = |cause: ::png::DecodingError| unreadable(path, &cause);
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
     let mut reader = Decoder::new(BufReader::new(file))
         .read_info()

@@ -6,6 +6,7 @@ mod buffer;
 mod content;
 mod geometry;
 mod histogram;
+mod percentiles;
 mod phantom;
 mod read;
 mod smooth;
@@ -14,6 +15,7 @@ mod write_nrrd;
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
 pub use histogram::{Histogram, suggested_iso};
+pub use percentiles::percentiles;
 pub use phantom::{
     HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
     VesselTree, orientation_of, phantom,

@@ -5,8 +5,7 @@ mod options;
 mod plan;
 mod stats;
 
-use crate::VERSION;
-use crate::batch::{Destination, Provenance};
+use crate::batch::Destination;
 use crate::error::Result;
 use crate::scene::Orbit;
 use crate::stop;
@@ -14,7 +13,7 @@ use crate::stop;
 use super::engine::Engine;
 use super::job::JobArguments;
 use super::progress::Bars;
-use super::render::gradient_note;
+use super::render::{gradient_note, provenance};
 use super::terminal::{message, note};
 use making::{Made, Making};
 use options::OrbitOptions;
@@ -49,7 +48,7 @@ impl OrbitArguments {
     pub fn run(self) -> Result<()> {
         let file = self.job.scene_file()?;
         let options = self.orbit.over(file.group()?);
-        let job = self.job.over(&file)?;
+        let mut job = self.job.over(&file)?;
         let plan = Plan::of(options, &job)?;
         // Before the device is opened: OpenCL drivers catch signals too, and end the process by their
         // own unless they were there last.
@@ -58,6 +57,7 @@ impl OrbitArguments {
 
         let bars = Bars::new();
         let loaded = job.source.load(&bars)?;
+        job.options = loaded.measured(job.options);
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;
@@ -68,11 +68,7 @@ impl OrbitArguments {
             job: &job,
             engine: &engine,
             loaded: &loaded,
-            from: &Provenance {
-                version: VERSION,
-                content: loaded.volume.content_hash().to_hex().to_string(),
-                device: engine.device().name,
-            },
+            from: &provenance(&loaded, &engine),
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();

@@ -2,16 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::volume::{Histogram, Volume, Voxels};
+use super::{Volume, Voxels};
 
-/// For each of `percents` (0 to 100) the value that the nearest rank has: the smallest value of the
-/// volume such that so many percent of the voxels are not above it. Of whole-number voxels that is
-/// a value that occurs; of floating-point ones, what the histogram's bins tell of it.
-pub fn percentiles<const N: usize>(
-    volume: &Volume,
-    histogram: &Histogram,
-    percents: [f64; N],
-) -> [f64; N] {
+/// For each of `percents` (0 to 100) the physical value that the nearest rank has: the smallest value of
+/// a voxel such that so many percent of the voxels are not above it.
+pub fn percentiles(volume: &Volume, percents: &[f64]) -> Vec<f64> {
     let (counts, lowest) = match volume.voxels() {
         Voxels::U8(voxels) => (tally(voxels, |&v| usize::from(v)), 0.0),
         Voxels::U16(voxels) => (tally(voxels, |&v| usize::from(v)), 0.0),
@@ -19,12 +14,21 @@ pub fn percentiles<const N: usize>(
             tally(voxels, |&v| (i32::from(v) - i32::from(i16::MIN)) as usize),
             f64::from(i16::MIN),
         ),
-        Voxels::F32(_) => return percents.map(|percent| histogram.percentile(percent)),
+        Voxels::F32(voxels) => {
+            let mut sorted = voxels.to_vec();
+            sorted.par_sort_unstable_by(f32::total_cmp);
+            let value = |percent: &f64| {
+                let at = rank(sorted.len() as u64, *percent) - 1;
+                volume.rescale().physical(f64::from(sorted[at as usize]))
+            };
+            return percents.iter().map(value).collect();
+        }
     };
-    percents.map(|percent| {
-        let stored = lowest + nearest_rank(&counts, percent) as f64;
+    let value = |percent: &f64| {
+        let stored = lowest + nearest_rank(&counts, *percent) as f64;
         volume.rescale().physical(stored)
-    })
+    };
+    percents.iter().map(value).collect()
 }
 
 /// How often each of 2^16 keys occurs.
@@ -46,10 +50,14 @@ fn tally<T: Sync>(voxels: &[T], key: impl Fn(&T) -> usize + Sync) -> Vec<u64> {
         .reduce(|| vec![0; KEYS], sum)
 }
 
-fn nearest_rank(counts: &[u64], percent: f64) -> usize {
-    let total: u64 = counts.iter().sum();
+/// Which of so many voxels in ascending order it is, from 1.
+fn rank(total: u64, percent: f64) -> u64 {
     let rank = (percent.clamp(0.0, 100.0) / 100.0 * total as f64).ceil();
-    let rank = (rank as u64).clamp(1, total.max(1));
+    (rank as u64).clamp(1, total.max(1))
+}
+
+fn nearest_rank(counts: &[u64], percent: f64) -> usize {
+    let rank = rank(counts.iter().sum(), percent);
     let mut up_to = 0;
     let reached = counts.iter().position(|count| {
         up_to += count;

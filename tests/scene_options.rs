@@ -88,7 +88,7 @@ fn thresholds_are_values_shares_or_otsu() {
 #[test]
 fn a_projection_shows_the_whole_range_unless_told() {
     let window = |line: &[&str]| match resolved(&flags(line)).scene.picture {
-        Picture::Projection { window, .. } => (window.low(), window.high()),
+        Picture::Projection { window, .. } => (window.black(), window.white()),
         other => panic!("{other:?}"),
     };
     assert_eq!(window(&["--mode", "mip"]), (-100.0, 300.0));

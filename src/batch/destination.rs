@@ -47,7 +47,7 @@ pub enum Destination {
     },
 }
 
-/// What a frame depends on beside its scene. Pictures carry it, so that no frame of another volume,
+/// What a picture depends on beside its scene. Pictures carry it, so that no frame of another volume,
 /// device or program is taken for one that is there already.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
@@ -61,8 +61,8 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// The keys and texts of a picture's metadata; `scene` is the frame's.
-    fn metadata<'a>(&'a self, scene: &'a str) -> [(&'static str, &'a str); 4] {
+    /// The keys and texts of a picture's metadata; `scene` is the picture's.
+    pub fn metadata<'a>(&'a self, scene: &'a str) -> [(&'static str, &'a str); 4] {
         [
             ("scene", scene),
             ("version", self.version),

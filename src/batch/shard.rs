@@ -139,7 +139,7 @@ impl FromStr for ShardChoice {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if text == "auto" {
+        if text.trim().eq_ignore_ascii_case("auto") {
             return Ok(Self::Auto);
         }
         let numbers = text.split_once('/').and_then(|(index, count)| {
@@ -242,8 +242,10 @@ mod tests {
             "1/3".parse(),
             Ok(ShardChoice::Given(Shard { index: 1, count: 3 }))
         );
-        assert_eq!("auto".parse(), Ok(ShardChoice::Auto));
-        for wrong in ["3/3", "0/0", "-1/3", "1", "a/b", "1/2/3", "Auto", ""] {
+        for auto in ["auto", "AUTO"] {
+            assert_eq!(auto.parse(), Ok(ShardChoice::Auto));
+        }
+        for wrong in ["3/3", "0/0", "-1/3", "1", "a/b", "1/2/3", "automatic", ""] {
             assert!(wrong.parse::<ShardChoice>().is_err(), "{wrong}");
         }
     }

@@ -287,7 +287,8 @@ impl Experiment {
     /// # Errors
     /// Usage: there is no such experiment; the error lists all.
     pub fn named(name: &str) -> Result<&'static Self> {
-        let found = EXPERIMENTS.iter().find(|one| one.name == name);
+        let is_it = |one: &&Self| one.name.eq_ignore_ascii_case(name);
+        let found = EXPERIMENTS.iter().find(is_it);
         found.ok_or_else(|| {
             let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
             Error::usage(format!("there is no experiment '{name}'"))

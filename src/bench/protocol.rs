@@ -63,7 +63,8 @@ impl std::str::FromStr for Protocol {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let found = Self::ALL.into_iter().find(|one| one.name() == text);
+        let is_it = |one: &Self| one.name().eq_ignore_ascii_case(text.trim());
+        let found = Self::ALL.into_iter().find(is_it);
         found.ok_or_else(|| {
             Error::usage(format!("'{text}' is not a protocol: write static or orbit"))
         })

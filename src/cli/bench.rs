@@ -11,6 +11,7 @@ use crate::scene::options::concise;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::one_or_more;
 use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
+use crate::volume::percentiles;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::Source;
@@ -49,9 +50,10 @@ group! {
         #[serde(deserialize_with = "one_or_more")]
         volumes: Vec<FilePath>,
 
-        /// The value at which the volumes are looked at: a number, a share of the value range such
-        /// as 50%, or otsu [default: suggested by each one's histogram]
-        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        /// The value at which the volumes are looked at: a number, a share of the value range such as
+        /// 50%, a percentile of the voxels such as p99.5, or otsu [default: suggested by each one's
+        /// histogram]
+        #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
         iso: Threshold,
 
         /// How frames are timed: static, the camera where it is; or orbit, once around the volume
@@ -276,7 +278,11 @@ fn specimen(path: &Path, iso: Option<Threshold>, progress: &dyn Progress) -> Res
     })?;
     let loaded = source.load(progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let told = iso.map(|iso| iso.resolve(&loaded.subject));
+    let percentile = iso.and_then(Threshold::percentile);
+    let told = match (percentile, iso) {
+        (Some(percent), _) => percentiles(&loaded.volume, &[percent]).first().copied(),
+        (None, iso) => iso.map(|iso| iso.resolve(&loaded.subject)).transpose()?,
+    };
     let range = loaded.volume.range();
     if let Some(told) = told
         && !(range.min..=range.max).contains(&told)

@@ -58,8 +58,13 @@ impl DeviceOptions {
 pub struct DeviceName(String);
 
 impl DeviceName {
+    /// A device by its whole name.
+    pub fn of(name: &str) -> Self {
+        Self(name.to_owned())
+    }
+
     fn is_reference(&self) -> bool {
-        self.0 == "reference"
+        self.0.eq_ignore_ascii_case("reference")
     }
 }
 
@@ -86,7 +91,7 @@ impl FromStr for WorkGroup {
 
     fn from_str(text: &str) -> Result<Self> {
         let side = |side: &str| side.parse().ok().filter(|n| (1..=4096).contains(n));
-        text.split_once(['x', ','])
+        text.split_once(['x', 'X', ','])
             .and_then(|(w, h)| Some(Self([side(w)?, side(h)?])))
             .ok_or_else(|| {
                 Error::usage(format!(

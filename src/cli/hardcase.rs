@@ -11,7 +11,13 @@ use super::outputs;
 use super::terminal::{message, note};
 
 /// What stands before a hard case's name.
-pub const PREFIX: &str = "hardcase:";
+const PREFIX: &str = "hardcase:";
+
+/// The name behind it, where the text names a hard case.
+pub fn name(text: &str) -> Option<&str> {
+    let (prefix, name) = text.split_at_checked(PREFIX.len())?;
+    prefix.eq_ignore_ascii_case(PREFIX).then_some(name)
+}
 
 /// One of a case's volumes.
 #[derive(Debug, Clone, Copy)]

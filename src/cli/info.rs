@@ -9,9 +9,10 @@ use crate::extent::Range;
 use crate::octree::Octree;
 use crate::scene::options::group::group;
 use crate::scene::options::{concise, concise_within};
-use crate::scene::{Switch, VolumeOptions};
+use crate::scene::{SceneOptions, Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
+use super::carried::Carried;
 use super::load::{Loaded, Source};
 use super::progress::Bars;
 use super::scene::SceneArgument;
@@ -21,11 +22,15 @@ use super::terminal::to_stdout;
 /// Columns of the printed histogram.
 const WIDTH: usize = 60;
 
-/// Print what a volume is: geometry, values, a suggested iso value, the size of its octree
+/// Print what a volume is, or the scene that a picture carries
+///
+/// Of a volume: geometry, values, a suggested iso value, the size of its octree. Of a .png or .exr that
+/// angioray wrote: the scene, as --scene takes it, and what it was made by.
 #[derive(clap::Args)]
-#[command(override_usage = "angioray info VOLUME [OPTIONS]")]
+#[command(override_usage = "angioray info VOLUME|IMAGE [OPTIONS]")]
 #[command(after_help = "Example:
   angioray info head.nrrd
+  angioray info head.png
   angioray info head_256x256x256_u8.raw --raw-size 256x256x256 --raw-type u8 --json")]
 pub struct InfoArguments {
     #[command(flatten)]
@@ -54,12 +59,17 @@ impl InfoArguments {
         let file = self.scene.open()?;
         let options = self.volume.over(VolumeOptions::of_file(&file)?);
         let form = self.form.over(file.group()?);
+        let json = form.json.is_some_and(Switch::is_on);
+        let file = options.volume.as_ref();
+        if let Some(carried) = file.map(|file| Carried::of(&file.0)).transpose()?.flatten() {
+            return print_carried(&carried, json);
+        }
         let source = Source::of(&options)?;
         let bars = Bars::new();
         let loaded = source.load(&bars)?;
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let info = Info::of(&source, &loaded, &octree);
-        if form.json.is_some_and(Switch::is_on) {
+        if json {
             return to_stdout(|out| {
                 serde_json::to_writer_pretty(&mut *out, &info)?;
                 writeln!(out)
@@ -67,6 +77,40 @@ impl InfoArguments {
         }
         to_stdout(|out| info.print(out, &loaded.histogram))
     }
+}
+
+/// What a picture carries: what it was made by, then the scene as a scene file.
+fn print_carried(carried: &Carried, json: bool) -> Result<()> {
+    let picture = carried.picture.display();
+    if json {
+        // Its numbers and lists as a program reads them.
+        let scene = SceneOptions::parse(&carried.scene, &format!("{picture} (its scene)"))?;
+        let about = serde_json::json!({
+            "file": picture.to_string(),
+            "version": carried.version,
+            "device": carried.device,
+            "content": carried.content,
+            "scene": scene,
+        });
+        return to_stdout(|out| {
+            serde_json::to_writer_pretty(&mut *out, &about)?;
+            writeln!(out)
+        });
+    }
+    to_stdout(|out| {
+        // Comments, so that all of it is a scene file.
+        writeln!(out, "# {picture}")?;
+        for (name, value) in [
+            ("made by angioray", &carried.version),
+            ("on", &carried.device),
+            ("of a volume with the content", &carried.content),
+        ] {
+            if let Some(value) = value {
+                writeln!(out, "# {name} {value}")?;
+            }
+        }
+        writeln!(out, "{}", carried.scene.trim_end())
+    })
 }
 
 #[derive(Serialize)]
@@ -178,7 +222,7 @@ impl Info {
         row(
             "octree",
             format!(
-                "{} levels, leaves of {} voxels, {} bytes: {:.2} % of the volume",
+                "{} levels, leaves of {} cells, {} bytes: {:.2} % of the volume",
                 tree.levels,
                 tree.leaf,
                 tree.bytes,

@@ -54,12 +54,14 @@ impl JobArguments {
         let mut of_file = SceneOptions::of_file(file)?;
         let tolerance = self.tolerance;
         let tolerance = tolerance.over_file(file.group()?, &self.options, &mut of_file);
+        let flag_mode = self.options.picture.mode;
         let options = self.options.over(of_file);
         let transfer_file = options.picture.tf.as_ref().and_then(TransferChoice::file);
         let options = options.checked()?;
         tolerance.check(&options)?;
         let output = OutputOptions::of_file(file)?;
-        let output = self.output.clone().over(self.output.keep_of(output));
+        let output = self.output.keep_of(flag_mode, output);
+        let output = self.output.over(output);
         let device = self.device.keep_of(file.group()?);
         let device = self.device.over(device);
 

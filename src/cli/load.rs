@@ -10,10 +10,10 @@ use crate::scene::{
     FilePath, NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions,
 };
 use crate::volume::{
-    self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, suggested_iso,
+    self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, percentiles,
+    suggested_iso,
 };
 
-use super::outputs::absolute;
 use super::terminal::note;
 
 /// Bins of the histogram from which iso values are suggested.
@@ -78,11 +78,11 @@ impl Source {
         })
     }
 
-    /// Options of a scene as pictures store them, so that they render the same volume from wherever
-    /// they are read, in the same way: its path is absolute and the octree's leaf is given.
+    /// Options of a scene as pictures store them, so that they render the same volume in the same way:
+    /// its path is as it was given, and the octree's leaf is there.
     #[must_use]
     pub fn stored(&self, mut options: SceneOptions) -> SceneOptions {
-        options.volume.volume = Some(FilePath(absolute(&self.path)));
+        options.volume.volume = Some(FilePath(self.path.clone()));
         options.volume.octree_leaf = Some(self.leaf.edge());
         options
     }
@@ -118,6 +118,21 @@ impl Source {
             read_ms,
             smooth_ms,
         })
+    }
+}
+
+impl Loaded {
+    /// The hash of the volume's content, in hexadecimal.
+    pub fn content(&self) -> String {
+        self.volume.content_hash().to_hex().to_string()
+    }
+
+    /// The options, each order statistic of the voxels replaced by its value, which the user is told.
+    pub fn measured(&self, options: SceneOptions) -> SceneOptions {
+        let values = |percents: &[f64]| percentiles(&self.volume, percents);
+        let (options, notes) = options.measured(self.subject.range, values);
+        notes.iter().for_each(note);
+        options
     }
 }
 

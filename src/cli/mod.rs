@@ -1,19 +1,24 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
 mod bench;
+mod carried;
 mod compare;
+mod completion;
 mod devices;
 mod engine;
 mod hardcase;
+mod help;
 mod info;
 mod job;
 mod load;
+mod man;
 mod orbit;
 mod outputs;
 mod phantom;
 mod progress;
 mod render;
 mod repeat;
+mod replay;
 mod scene;
 mod stats;
 mod stopping;
@@ -23,9 +28,11 @@ mod tolerance;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 
 use crate::error::{Error, Result};
+use crate::scene::Switch;
+use crate::scene::options::group::group;
 use crate::volume;
 
 /// Pictures from angiograms and other sparse scalar volumes, without a window
@@ -34,14 +41,36 @@ use crate::volume;
     name = "angioray",
     version,
     arg_required_else_help = true,
-    max_term_width = 100
+    max_term_width = help::WIDTH
 )]
 #[command(after_help = "Example:
   angioray phantom vessels -o vessels.nrrd
   angioray render vessels.nrrd -o vessels.png")]
 struct Arguments {
+    #[command(flatten)]
+    voice: Voice,
+
     #[command(subcommand)]
     command: Command,
+}
+
+group! {
+    /// How much the program says.
+    pub struct Voice {
+        /// Say nothing but errors: no notes, no progress, no names of written files
+        #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
+            default_missing_value = "on", global = true, help_heading = None::<&str>)]
+        quiet: Switch,
+    }
+}
+
+impl Arguments {
+    fn run(self) -> Result<()> {
+        if let Some(quiet) = self.voice.quiet {
+            terminal::set_quiet(quiet.is_on());
+        }
+        self.command.run()
+    }
 }
 
 #[derive(Subcommand)]
@@ -49,10 +78,13 @@ enum Command {
     Render(Box<render::RenderArguments>),
     Orbit(Box<orbit::OrbitArguments>),
     Compare(Box<compare::CompareArguments>),
+    Replay(Box<replay::ReplayArguments>),
     Bench(bench::BenchArguments),
     Info(info::InfoArguments),
     Phantom(phantom::PhantomArguments),
     Devices(devices::DevicesArguments),
+    Completion(completion::CompletionArguments),
+    Man(man::ManArguments),
 }
 
 impl Command {
@@ -70,24 +102,30 @@ impl Command {
             Self::Render(arguments) => arguments.run(),
             Self::Orbit(arguments) => arguments.run(),
             Self::Compare(arguments) => arguments.run(),
+            Self::Replay(arguments) => arguments.run(),
             Self::Bench(arguments) => arguments.run(),
             Self::Info(arguments) => arguments.run(),
             Self::Phantom(arguments) => arguments.run(),
             Self::Devices(arguments) => arguments.run(),
+            Self::Completion(arguments) => arguments.run(),
+            Self::Man(arguments) => arguments.run(),
         }
     }
 }
 
 /// The whole program: its arguments, its work, its exit code.
 pub fn main() -> ExitCode {
-    let outcome = match Arguments::try_parse() {
-        Ok(arguments) => ready().and_then(|()| arguments.command.run()),
+    let parsed = help::program()
+        .try_get_matches()
+        .and_then(|matches| Arguments::from_arg_matches(&matches));
+    let outcome = match parsed {
+        Ok(arguments) => ready().and_then(|()| arguments.run()),
         Err(stop) => match stop.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
                 terminal::to_stdout(|out| write!(out, "{}", stop.render()))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-                terminal::message(stop.render());
+                terminal::usage(&stop.render());
                 return ExitCode::from(2);
             }
             _ => Err(misused(&stop)),
@@ -138,24 +176,21 @@ fn misused(stop: &clap::Error) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]
     fn the_arguments_are_consistent_and_every_command_has_an_example() {
-        let mut program = Arguments::command();
+        let mut program = help::program();
         program.clone().debug_assert();
         program.build();
         for command in program.get_subcommands().filter(|c| c.get_name() != "help") {
-            let example = command.get_after_help().map(ToString::to_string);
             let wanted = format!("  angioray {} ", command.get_name());
             let wanted = wanted.trim_end();
-            assert!(
-                example.is_some_and(|text| text.contains(wanted)),
-                "{}",
-                command.get_name()
-            );
+            let helps = [command.get_after_help(), command.get_after_long_help()];
+            for help in helps.map(|help| help.map(ToString::to_string)) {
+                let has_example = help.is_some_and(|text| text.contains(wanted));
+                assert!(has_example, "{}", command.get_name());
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
 use crate::output::{check_folder, check_writable};
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::scene::{FilePath, FrameCount, SceneFile};
+use crate::scene::{FilePath, FrameCount, Mode, SceneFile};
 
 group! {
     /// The files that a rendering writes.
@@ -20,9 +20,10 @@ group! {
         #[arg(short, long, value_name = "FILE")]
         output: FilePath,
 
-        /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast,
-        /// kind, certificate (iso, exact sampling: 0 proven to miss, 1 proven to hit, 2 undecided),
-        /// with commas between, or all
+        /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
+        /// certificate, with commas between, or all that the mode has. certificate goes with iso alone:
+        /// 0 proven to miss, 1 proven to hit, 2 undecided (with fixed steps 2 everywhere, since they
+        /// prove nothing)
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 
@@ -51,9 +52,12 @@ impl OutputOptions {
         })
     }
 
-    /// What of a scene file still applies when these are the flags: another picture file drops what
-    /// its format cannot hold.
-    pub fn keep_of(&self, mut file: Self) -> Self {
+    /// What of a scene file still applies when these and this mode are the flags: another picture file
+    /// drops what its format cannot hold, another mode the layers that it does not have.
+    pub fn keep_of(&self, mode: Option<Mode>, mut file: Self) -> Self {
+        if let Some(mode) = mode {
+            file.aov = file.aov.and_then(|layers| layers.kept_in(mode));
+        }
         let Some(FilePath(path)) = &self.output else {
             return file;
         };
@@ -79,11 +83,11 @@ impl OutputOptions {
         }
     }
 
-    /// How a picture of this name is written.
+    /// How a picture of this name and mode is written.
     ///
     /// # Errors
-    /// A format that is not known, what it cannot hold.
-    pub fn encoding(&self, picture: &Path) -> Result<Encoding> {
+    /// A format that is not known, what it cannot hold, a layer that the mode does not have.
+    pub fn encoding(&self, picture: &Path, mode: Mode) -> Result<Encoding> {
         let format = Format::from_path(picture)?;
         if self.quality.is_some() && format != Format::Jpeg {
             return Err(Error::usage("'--quality' is for .jpg files only"));
@@ -92,7 +96,10 @@ impl OutputOptions {
             format,
             bit_depth: self.bit_depth.map_or(BitDepth::Eight, |Bits(bits)| bits),
             quality: self.quality.unwrap_or(Encoding::DEFAULT_QUALITY),
-            layers: (self.aov.as_ref()).map_or(Vec::new(), |Layers(layers)| layers.clone()),
+            layers: match &self.aov {
+                Some(layers) => layers.of_mode(mode)?,
+                None => Vec::new(),
+            },
         };
         encoding.check()?;
         Ok(encoding)
@@ -102,22 +109,22 @@ impl OutputOptions {
     ///
     /// # Errors
     /// What an animation cannot hold.
-    pub fn encoding_of_animation(&self) -> Result<Encoding> {
+    pub fn encoding_of_animation(&self, mode: Mode) -> Result<Encoding> {
         if self.bit_depth == Some(Bits(BitDepth::Sixteen)) {
             return Err(Error::usage(
                 "16 bits per channel (--bit-depth 16) are for .png files only: an animation has 8",
             )
             .hint("write pictures, such as -o frames/%04d.png"));
         }
-        self.encoding(Path::new("frame.png"))
+        self.encoding(Path::new("frame.png"), mode)
     }
 
     /// # Errors
     /// As [`OutputOptions::path`] and [`OutputOptions::encoding`].
-    pub fn files(self) -> Result<Files> {
+    pub fn files(self, mode: Mode) -> Result<Files> {
         let picture = self.path()?.to_owned();
         Ok(Files {
-            encoding: self.encoding(&picture)?,
+            encoding: self.encoding(&picture, mode)?,
             picture,
             stats: self.stats.map(|FilePath(path)| path),
         })
@@ -171,7 +178,7 @@ pub fn check_spared(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
 
 /// The same file, named so that the working folder does not matter. A symbolic link keeps its own
 /// name: a raw file's layout, and which files belong to a header, may lie in it.
-pub fn absolute(path: &Path) -> PathBuf {
+fn absolute(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default();
     match fs::canonicalize(folder(path)) {
         Ok(folder) => folder.join(name),
@@ -232,27 +239,69 @@ fn place(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| absolute(path))
 }
 
-/// `--aov`: layers by name, or all.
+/// `--aov`: layers by name, or all that the mode has.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layers(Vec<Layer>);
+pub enum Layers {
+    All,
+    Named(Vec<Layer>),
+}
+
+impl Layers {
+    /// Whether pictures of a mode have the layer: what is proven of a hit or a miss is of surfaces.
+    fn is_of(layer: Layer, mode: Mode) -> bool {
+        layer != Layer::Certificate || mode == Mode::Iso
+    }
+
+    /// The layers of a picture of this mode.
+    ///
+    /// # Errors
+    /// Usage: one that is named, and that the mode does not have.
+    fn of_mode(&self, mode: Mode) -> Result<Vec<Layer>> {
+        match self {
+            Self::All => {
+                let layers = Layer::ALL.into_iter();
+                Ok(layers.filter(|layer| Self::is_of(*layer, mode)).collect())
+            }
+            Self::Named(layers) => match layers.iter().find(|layer| !Self::is_of(**layer, mode)) {
+                None => Ok(layers.clone()),
+                Some(stray) => Err(Error::usage(format!(
+                    "the layer '{}' does not go with mode '{mode}': only a surface is proven to be hit or missed",
+                    stray.name()
+                ))
+                .hint("leave it out, or write all for every layer that the mode has")),
+            },
+        }
+    }
+
+    /// Without those that the mode does not have; nothing where none is left.
+    fn kept_in(self, mode: Mode) -> Option<Self> {
+        match self {
+            Self::All => Some(Self::All),
+            Self::Named(mut layers) => {
+                layers.retain(|layer| Self::is_of(*layer, mode));
+                (!layers.is_empty()).then_some(Self::Named(layers))
+            }
+        }
+    }
+}
 
 impl FromStr for Layers {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if text == "all" {
-            return Ok(Self(Layer::ALL.to_vec()));
+        if text.eq_ignore_ascii_case("all") {
+            return Ok(Self::All);
         }
         let layers = text.split(',').map(|name| {
-            let found = Layer::ALL.into_iter().find(|layer| layer.name() == name);
-            found.ok_or_else(|| {
+            let is_it = |layer: &Layer| layer.name().eq_ignore_ascii_case(name.trim());
+            Layer::ALL.into_iter().find(is_it).ok_or_else(|| {
                 let names = Layer::ALL.map(Layer::name).join(", ");
                 Error::usage(format!(
                     "'{name}' is no layer: write all, or some of {names} with commas between"
                 ))
             })
         });
-        layers.collect::<Result<Vec<_>>>().map(Self)
+        layers.collect::<Result<Vec<_>>>().map(Self::Named)
     }
 }
 

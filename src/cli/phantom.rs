@@ -232,7 +232,7 @@ impl FromStr for Kind {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let Some(name) = text.strip_prefix(hardcase::PREFIX) else {
+        let Some(name) = hardcase::name(text) else {
             return text.parse().map(Self::Phantom);
         };
         // Parsers of flags and of scene files pass on no hint.
@@ -257,13 +257,13 @@ impl TypedValueParser for Kinds {
         argument: Option<&clap::Arg>,
         text: &OsStr,
     ) -> std::result::Result<Kind, clap::Error> {
-        if text.to_string_lossy().starts_with(hardcase::PREFIX) {
+        if hardcase::name(&text.to_string_lossy()).is_some() {
             let parser = StringValueParser::new().try_map(|text| text.parse::<Kind>());
             return parser.parse_ref(command, argument, text);
         }
         let parser = PossibleValuesParser::new(PhantomKind::ALL.map(PhantomKind::name));
         let parser = parser.try_map(|name| name.parse::<Kind>());
-        parser.parse_ref(command, argument, text)
+        parser.parse_ref(command, argument, &text.to_ascii_lowercase())
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
@@ -288,7 +288,7 @@ impl FromStr for GridSize {
             ))
         };
         let sides: Vec<u64> = text
-            .split(['x', ','])
+            .split(['x', 'X', ','])
             .map(|side| side.parse().map_err(|_| wrong()))
             .collect::<Result<_>>()?;
         let dims = match sides[..] {
@@ -308,7 +308,8 @@ impl FromStr for VoxelName {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let found = VoxelType::ALL.into_iter().find(|t| t.name() == text);
+        let is_it = |t: &VoxelType| t.name().eq_ignore_ascii_case(text.trim());
+        let found = VoxelType::ALL.into_iter().find(is_it);
         found.map(Self).ok_or_else(|| {
             Error::usage(format!(
                 "'{text}' is not a voxel type: write u8, u16, i16 or f32"
@@ -337,7 +338,8 @@ impl FromStr for Axis {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let found = ["x", "y", "z"].iter().position(|name| *name == text);
+        let is_it = |name: &&str| name.eq_ignore_ascii_case(text.trim());
+        let found = ["x", "y", "z"].iter().position(|name| is_it(&name));
         found
             .map(Self)
             .ok_or_else(|| Error::usage(format!("'{text}' is not an axis: write x, y or z")))

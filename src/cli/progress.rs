@@ -8,6 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 
+use super::terminal::is_quiet;
+
 /// Work shorter than this shows no bar.
 const SHORT: Duration = Duration::from_millis(400);
 
@@ -29,7 +31,7 @@ struct Stage {
 impl Bars {
     pub fn new() -> Self {
         Self {
-            terminal: std::io::stderr().is_terminal(),
+            terminal: std::io::stderr().is_terminal() && !is_quiet(),
             stage: Mutex::new(None),
         }
     }

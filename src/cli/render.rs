@@ -3,15 +3,18 @@
 use std::time::Instant;
 
 use crate::VERSION;
+use crate::batch::Provenance;
 use crate::error::Result;
-use crate::frame::{self, Wanted};
+use crate::frame::{self, Frame, Wanted};
 use crate::measure::Counts;
 use crate::render::GradientFigures;
-use crate::tolerance::{Cost, ToleranceStats};
+use crate::scene::{Resolved, SamplingMethod};
+use crate::tolerance::{Choice, Cost, ToleranceStats};
 
-use super::engine::Engine;
-use super::job::JobArguments;
-use super::load::ms_since;
+use super::engine::{Engine, Rendered};
+use super::job::{Job, JobArguments};
+use super::load::{Loaded, ms_since};
+use super::outputs::Files;
 use super::progress::Bars;
 use super::stats::{self, Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
@@ -24,8 +27,10 @@ use super::tolerance::choose;
   angioray render head.nrrd -o head.png
   angioray render head.nrrd -o head.png --mode mip --view left --zoom 1.5
   angioray render cta.nii.gz -o cta.png --mode dvr --tf cta --shading phong --carm 'LAO 30 CRA 20'
+  angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --mode mip --max-error rmse:0.002
-  angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference")]
+  angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference
+  angioray render --scene head.png -o left.png --view left --size 1024x1024")]
 pub struct RenderArguments {
     #[command(flatten)]
     job: JobArguments,
@@ -34,92 +39,159 @@ pub struct RenderArguments {
 impl RenderArguments {
     pub fn run(self) -> Result<()> {
         let file = self.job.scene_file()?;
-        let job = self.job.over(&file)?;
-        let files = job.output.files()?;
+        let mut job = self.job.over(&file)?;
+        let files = job.output.clone().files(job.options.mode())?;
         files.check(&job.inputs)?;
         let engine = Engine::open(&job.device)?;
-
         let bars = Bars::new();
         let loaded = job.source.load(&bars)?;
-        let mut resolved = job.options.resolve(&loaded.subject)?;
-        resolved.notes.iter().for_each(note);
-        files.encoding.check_size(resolved.scene.size)?;
-
-        let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
-        let prepared = engine.prepare(&loaded.volume, &job.source, &bars)?;
-        let mut caster = engine.caster(&loaded.volume, &prepared)?;
-        let choice = match job.bound {
-            Some(bound) => choose(
-                bound,
-                &job.options,
-                &loaded,
-                wanted,
-                &[],
-                &mut caster,
-                &bars,
-            )?,
-            None => None,
-        };
-        if let Some(choice) = &choice {
-            resolved = choice.resolved.clone();
-        }
-        let rendered = caster.render(&resolved.scene, wanted, &bars)?;
-
-        if let Some(figures) = &rendered.gradients {
-            note(gradient_note(figures));
-        }
-        let began = Instant::now();
-        let scene_text = resolved.options.to_toml()?;
-        let metadata = [("scene", scene_text.as_str()), ("version", VERSION)];
-        frame::write(&files.picture, &rendered.frame, &files.encoding, &metadata)?;
-        let chosen = choice
-            .as_ref()
-            .map_or(Cost::default(), |choice| choice.cost);
-        let times_ms = Times {
-            read: loaded.read_ms,
-            smooth: loaded.smooth_ms,
-            encode: ms_since(began),
-            build: rendered.times_ms.build + chosen.build_ms,
-            upload: rendered.times_ms.upload + chosen.upload_ms,
-            ..rendered.times_ms
-        };
-        message(format_args!(
-            "wrote {}: {} {}, {:.1} ms on {}",
-            files.picture.display(),
-            resolved.scene.picture.mode(),
-            resolved.scene.size,
-            times_ms.render,
-            rendered.device.name
-        ));
-        if let Some(undecided) = rendered.frame.undecided() {
-            let pixels = rendered.frame.size.pixels();
-            message(format_args!(
-                "certificate: {undecided} of {pixels} pixels undecided, a share of {:.1e}",
-                undecided as f64 / pixels as f64
-            ));
-        }
-        let Some(path) = &files.stats else {
-            return Ok(());
-        };
-        let stats = Stats {
-            version: VERSION,
+        job.options = loaded.measured(job.options);
+        draw(Drawing {
             command: "render",
-            scene: &resolved.options,
-            volume: VolumeStats::of(&job.source.path, &loaded.volume, loaded.non_finite),
-            device: rendered.device,
-            channels: frame::channels(&files.encoding),
-            times_ms,
-            passes: rendered.passes,
-            counts: Counts::of(&rendered.frame, &resolved.scene.picture),
-            memory: Memory::now(
-                rendered.device_bytes,
-                rendered.gradients.map_or(0, |figures| figures.bytes),
-                rendered.uploaded_bytes + chosen.uploaded_bytes,
-            ),
-            max_error: choice.as_ref().map(ToleranceStats::of),
-        };
-        stats::write(&stats, path)
+            job: &job,
+            files: &files,
+            engine: &engine,
+            loaded: &loaded,
+            bars: &bars,
+        })
     }
+}
+
+/// A picture that is to be made.
+pub struct Drawing<'a> {
+    /// The command, as the statistics name it.
+    pub command: &'static str,
+    pub job: &'a Job,
+    pub files: &'a Files,
+    pub engine: &'a Engine,
+    pub loaded: &'a Loaded,
+    pub bars: &'a Bars,
+}
+
+/// Renders the picture, writes it and its statistics, and says what was written.
+pub fn draw(drawing: Drawing<'_>) -> Result<()> {
+    let Drawing {
+        job,
+        files,
+        engine,
+        loaded,
+        bars,
+        ..
+    } = drawing;
+    let mut resolved = job.options.resolve(&loaded.subject)?;
+    resolved.notes.iter().for_each(note);
+    files.encoding.check_size(resolved.scene.size)?;
+
+    let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
+    let prepared = engine.prepare(&loaded.volume, &job.source, bars)?;
+    let mut caster = engine.caster(&loaded.volume, &prepared)?;
+    let choice = match job.bound {
+        Some(bound) => choose(bound, &job.options, loaded, wanted, &[], &mut caster, bars)?,
+        None => None,
+    };
+    if let Some(choice) = &choice {
+        resolved = choice.resolved.clone();
+    }
+    let mut rendered = caster.render(&resolved.scene, wanted, bars)?;
+
+    if let Some(figures) = &rendered.gradients {
+        note(gradient_note(figures));
+    }
+    let began = Instant::now();
+    write_picture(&drawing, &rendered.frame, &resolved)?;
+    let chosen = choice
+        .as_ref()
+        .map_or(Cost::default(), |choice| choice.cost);
+    let times_ms = std::mem::take(&mut rendered.times_ms);
+    let times_ms = Times {
+        read: loaded.read_ms,
+        smooth: loaded.smooth_ms,
+        encode: ms_since(began),
+        build: times_ms.build + chosen.build_ms,
+        upload: times_ms.upload + chosen.upload_ms,
+        ..times_ms
+    };
+    message(format_args!(
+        "wrote {}: {} {}, {:.1} ms on {}",
+        files.picture.display(),
+        resolved.scene.picture.mode(),
+        resolved.scene.size,
+        times_ms.render,
+        rendered.device.name
+    ));
+    tell_certificate(&rendered.frame, &resolved);
+    write_stats(&drawing, rendered, times_ms, &resolved, choice.as_ref())
+}
+
+/// Writes the picture, with what it was made of where its format carries that.
+fn write_picture(drawing: &Drawing<'_>, frame: &Frame, resolved: &Resolved) -> Result<()> {
+    let files = drawing.files;
+    if !files.encoding.format.carries_metadata() {
+        return frame::write(&files.picture, frame, &files.encoding, &[]);
+    }
+    let scene = resolved.options.to_toml()?;
+    let from = provenance(drawing.loaded, drawing.engine);
+    frame::write(
+        &files.picture,
+        frame,
+        &files.encoding,
+        &from.metadata(&scene),
+    )
+}
+
+/// What pictures of this volume by this engine depend on beside their scene.
+pub fn provenance(loaded: &Loaded, engine: &Engine) -> Provenance {
+    Provenance {
+        version: VERSION,
+        content: loaded.content(),
+        device: engine.device().name,
+    }
+}
+
+/// Says how much is proven of a picture of which something can be: a surface that is solved.
+fn tell_certificate(frame: &Frame, resolved: &Resolved) {
+    if let Some(undecided) = frame.undecided()
+        && resolved.scene.sampling_method() == SamplingMethod::Exact
+    {
+        let pixels = frame.size.pixels();
+        message(format_args!(
+            "certificate: {undecided} of {pixels} pixels undecided, a share of {:.1e}",
+            undecided as f64 / pixels as f64
+        ));
+    }
+}
+
+/// Writes the statistics where they are wanted.
+fn write_stats(
+    drawing: &Drawing<'_>,
+    rendered: Rendered,
+    times_ms: Times,
+    resolved: &Resolved,
+    choice: Option<&Choice>,
+) -> Result<()> {
+    let (files, job, loaded) = (drawing.files, drawing.job, drawing.loaded);
+    let Some(path) = &files.stats else {
+        return Ok(());
+    };
+    let chosen = choice.map_or(Cost::default(), |choice| choice.cost);
+    let stats = Stats {
+        version: VERSION,
+        command: drawing.command,
+        scene: &resolved.options,
+        volume: VolumeStats::of(&job.source.path, &loaded.volume, loaded.non_finite),
+        device: rendered.device,
+        channels: frame::channels(&files.encoding),
+        times_ms,
+        passes: rendered.passes,
+        counts: Counts::of(&rendered.frame, &resolved.scene.picture),
+        memory: Memory::now(
+            rendered.device_bytes,
+            rendered.gradients.map_or(0, |figures| figures.bytes),
+            rendered.uploaded_bytes + chosen.uploaded_bytes,
+        ),
+        max_error: choice.map(ToleranceStats::of),
+    };
+    stats::write(&stats, path)
 }
 
 /// What precomputed gradients cost and are worth.

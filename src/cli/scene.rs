@@ -1,4 +1,4 @@
-//! `--scene`: every command's options from a file.
+//! `--scene`: every command's options from a file, or from a picture that carries its scene.
 
 use std::path::{Path, PathBuf};
 
@@ -7,13 +7,15 @@ use clap::CommandFactory;
 use crate::error::Result;
 use crate::scene::{SceneFile, flag_names};
 
-use super::Arguments;
+use super::carried::Carried;
+use super::{Arguments, Voice, terminal};
 
 #[derive(clap::Args)]
 pub struct SceneArgument {
     /// Take options from a TOML file: the flags' names as keys, those of other commands left
-    /// alone, files relative to it; flags win over it
-    #[arg(long, value_name = "FILE.toml", help_heading = "Scene")]
+    /// alone, files relative to it; flags win over it. Or from a picture, .png or .exr, that carries
+    /// its scene
+    #[arg(long, value_name = "FILE.toml|PICTURE", help_heading = "Scene")]
     scene: Option<PathBuf>,
 }
 
@@ -22,14 +24,20 @@ impl SceneArgument {
         self.scene.as_deref()
     }
 
-    /// The file named, or one that says nothing. One file may serve several commands: a key is
+    /// The file named, or one that says nothing; of a picture the scene that it carries. One file may serve several commands: a key is
     /// wrong when no command has such a flag.
     pub fn open(&self) -> Result<SceneFile> {
         let Some(path) = &self.scene else {
             return Ok(SceneFile::of_text("", ""));
         };
-        let file = SceneFile::read(path)?;
+        let file = match Carried::of(path)? {
+            Some(carried) => carried.scene_file(),
+            None => SceneFile::read(path)?,
+        };
         file.check_keys(&keys())?;
+        if let Some(quiet) = file.group::<Voice>()?.quiet {
+            terminal::set_quiet(quiet.is_on());
+        }
         Ok(file)
     }
 }
@@ -38,5 +46,6 @@ impl SceneArgument {
 fn keys() -> Vec<String> {
     let program = Arguments::command();
     let names = program.get_subcommands().flat_map(flag_names);
+    let names = names.chain(flag_names(&program));
     names.filter(|name| name != "scene").collect()
 }

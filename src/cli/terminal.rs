@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, Write};
+use std::sync::OnceLock;
 
 use crate::error::{Error, Result};
 
@@ -20,8 +21,29 @@ pub fn to_stdout(data: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<
     }
 }
 
-/// A line for the user. Where stderr is closed there is nobody to tell.
+/// Whether nothing but errors is said, as far as that was said already.
+static QUIET: OnceLock<bool> = OnceLock::new();
+
+/// Says whether nothing but errors is said from now on. The first call is the one that counts: flags are
+/// read before scene files.
+pub fn set_quiet(quiet: bool) {
+    let _ = QUIET.set(quiet);
+}
+
+/// Whether nothing but errors is said.
+pub fn is_quiet() -> bool {
+    QUIET.get().is_some_and(|quiet| *quiet)
+}
+
+/// A line for the user, unless nothing but errors is said.
 pub fn message(line: impl Display) {
+    if !is_quiet() {
+        say(line);
+    }
+}
+
+/// Where stderr is closed there is nobody to read it.
+fn say(line: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
@@ -30,8 +52,13 @@ pub fn note(sentence: impl Display) {
     message(format_args!("note: {sentence}"));
 }
 
+/// How the program is called, where it was called without saying what to do.
+pub fn usage(text: &impl Display) {
+    say(text);
+}
+
 pub fn error(error: &Error) {
-    message(lines(error).trim_end());
+    say(lines(error).trim_end());
 }
 
 /// An error as it is printed: a line, and one for its hint.

@@ -44,7 +44,7 @@ impl ModeSettings {
         settings: Option<Vec<Setting>>,
         subject: &Subject,
     ) -> Result<Self> {
-        let seen = Self::of_mode(mode, base).what();
+        let seen = base.of_mode(mode).what();
         let resolved = seen.checked()?.resolve(subject)?;
         let settings = match settings {
             Some(settings) => settings,
@@ -62,20 +62,13 @@ impl ModeSettings {
         Ok(this)
     }
 
-    /// What of `options` means something in a mode.
-    pub fn of_mode(mode: Mode, options: &SceneOptions) -> SceneOptions {
-        let mut of_mode = SceneOptions::default();
-        of_mode.picture.mode = Some(mode);
-        of_mode.over(options.clone())
-    }
-
     /// One setting more: what `options` says, as far as it means something in the mode, of how rays
     /// are followed. Nothing where it says nothing.
     ///
     /// # Errors
     /// As [`Self::add`].
     pub fn add_given(&mut self, options: &SceneOptions, subject: &Subject) -> Result<()> {
-        let how = Self::of_mode(self.mode, options).how();
+        let how = options.of_mode(self.mode).how();
         if how == SceneOptions::default() {
             return Ok(());
         }

@@ -129,6 +129,30 @@ pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     Ok(pairs)
 }
 
+/// The layers whose channels are all there.
+pub(super) fn read_encoding(path: &Path) -> Result<super::Encoding> {
+    let meta = MetaData::read_from_file(path, false).map_err(|e| unreadable(path, e))?;
+    let mut names: Vec<String> = Vec::new();
+    if let Some(header) = meta.headers.first() {
+        names.extend(
+            header
+                .channels
+                .list
+                .iter()
+                .map(|channel| utf8(&channel.name)),
+        );
+    }
+    let is_there = |layer: &super::Layer| {
+        let mut channels = layer.channels().iter();
+        channels.all(|name| names.iter().any(|there| there == name))
+    };
+    let layers = super::Layer::ALL.into_iter().filter(is_there).collect();
+    Ok(super::Encoding {
+        layers,
+        ..super::Encoding::new(super::Format::Exr)
+    })
+}
+
 fn attribute_name(key: &str) -> Text {
     if standard_names::ALL.contains(&key.as_bytes()) {
         text(&format!("{PREFIX}{key}"))

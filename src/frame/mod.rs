@@ -19,7 +19,7 @@ mod write;
 
 pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
 pub use format::{BitDepth, Encoding, Format, channels};
-pub use metadata::read_metadata;
+pub use metadata::{carrier, read_encoding, read_metadata};
 pub use percentile::{median, percentile};
 pub use png::read_display;
 pub use whole::is_whole;

@@ -8,7 +8,7 @@ use ::png::{ColorType, Compression, Decoder, Encoder, EncodingError, SrgbRenderi
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{BitDepth, Frame, Wanted, quantize};
+use super::{BitDepth, Encoding, Format, Frame, Wanted, quantize};
 
 pub(super) fn encode(
     out: &mut impl Write,
@@ -78,22 +78,19 @@ pub(super) fn rgb_encoder<'a, W: Write>(
 /// # Errors
 /// A file that cannot be read, is damaged, or is another kind of PNG.
 pub fn read_display(path: &Path) -> Result<Frame> {
-    let unreadable = |cause: &dyn std::fmt::Display| {
-        Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
-    };
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
     let mut reader = Decoder::new(BufReader::new(file))
         .read_info()
-        .map_err(|cause| unreadable(&cause))?;
+        .map_err(|cause| unreadable(path, &cause))?;
     let info = reader.info();
     if (info.color_type, info.bit_depth) != (ColorType::Rgb, ::png::BitDepth::Eight) {
-        return Err(unreadable(&"it is not RGB of 8 bits"));
+        return Err(unreadable(path, &"it is not RGB of 8 bits"));
     }
     let size = ImageSize::new(info.width, info.height)?;
     let mut rgb = vec![0; 3 * size.pixels()];
     reader
         .next_frame(&mut rgb)
-        .map_err(|cause| unreadable(&cause))?;
+        .map_err(|cause| unreadable(path, &cause))?;
     let level = |byte: u8| f32::from(byte) / f32::from(u8::MAX);
     let display = rgb.as_chunks::<3>().0.iter();
     Ok(Frame {
@@ -102,15 +99,33 @@ pub fn read_display(path: &Path) -> Result<Frame> {
                 .map(|&[r, g, b]| [level(r), level(g), level(b), 1.0])
                 .collect(),
         ),
-        ..Frame::blank(size, Wanted::DISPLAY)
+        ..Frame::blank(size, Wanted::DISPLAY)?
     })
+}
+
+/// The bits per channel.
+pub(super) fn read_encoding(path: &Path) -> Result<Encoding> {
+    let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
+    let reader = Decoder::new(BufReader::new(file))
+        .read_info()
+        .map_err(|cause| unreadable(path, &cause))?;
+    let bit_depth = match reader.info().bit_depth {
+        ::png::BitDepth::Sixteen => BitDepth::Sixteen,
+        _ => BitDepth::Eight,
+    };
+    Ok(Encoding {
+        bit_depth,
+        ..Encoding::new(Format::Png)
+    })
+}
+
+fn unreadable(path: &Path, cause: &dyn std::fmt::Display) -> Error {
+    Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
 }
 
 /// The keys and texts of all text chunks: tEXt, zTXt, then iTXt, each in the file's order.
 pub(super) fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
-    let unreadable = |cause: ::png::DecodingError| {
-        Error::input(format!("{}: not a readable PNG: {cause}", path.display()))
-    };
+    let unreadable = |cause: ::png::DecodingError| unreadable(path, &cause);
     let file = std::fs::File::open(path).map_err(|e| Error::reading(path, "read", &e))?;
     let mut reader = Decoder::new(BufReader::new(file))
         .read_info()

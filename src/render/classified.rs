@@ -95,8 +95,8 @@ pub fn floor(
     let [min, max] = octree.ranges()[octree.ranges().len() - 1];
     let picture_alone = !(wanted.value || wanted.depth);
     match of {
-        Projection::Maximum if picture_alone => min.max(stored(rescale, window.low())),
-        Projection::Minimum if picture_alone => -max.min(stored(rescale, window.high())),
+        Projection::Maximum if picture_alone => min.max(stored(rescale, window.range().min)),
+        Projection::Minimum if picture_alone => -max.min(stored(rescale, window.range().max)),
         Projection::Maximum => min,
         Projection::Minimum => -max,
         Projection::LocalMaximum { threshold } if stored(rescale, threshold) > min => min,

@@ -15,7 +15,7 @@ use super::passes::{
     surface_normal, window_value,
 };
 use super::planes::Planes;
-use super::twins::{self, stored, stored_with_error};
+use super::twins::{self, stored, stored_window, stored_with_error};
 use super::variant::{ProjectionLoop, refine_number, traverse_number};
 
 /// What is looked at, and what is wanted of it.
@@ -181,12 +181,8 @@ pub fn projection(run: &mut Run, view: &View, of: Projection, window: Window) ->
     )?;
 
     let mut color = run.plane("colour plane")?;
-    let rescale = view.volume.rescale();
-    let window = [
-        stored(rescale, window.low()),
-        stored(rescale, window.high()),
-    ];
-    window_value(run, &view.rays, window, &kind, &value, &mut color)?;
+    let ends = stored_window(view.volume.rescale(), window);
+    window_value(run, &view.rays, ends, &kind, &value, &mut color)?;
     Ok(Planes {
         color,
         display: None,

@@ -1,6 +1,6 @@
 //! From the scene's data to the structs that kernels read; the structs' layouts for the test.
 
-use crate::scene::{Light, Phong, Rgb, Sampling, Tone as SceneTone};
+use crate::scene::{Light, Phong, Rgb, Sampling, Tone as SceneTone, Window};
 use crate::volume::{Rescale, Volume};
 
 use super::abi::{
@@ -37,7 +37,20 @@ pub fn stored(rescale: Rescale, physical: f64) -> f32 {
     rescale.stored(physical).clamp(-most, most) as f32
 }
 
-/// The same, and how far it is from the value asked for.
+/// A window's ends, black and white, in stored units. Where single precision cannot tell them apart and
+/// white is the lower one, it is the next number below.
+pub fn stored_window(rescale: Rescale, window: Window) -> [f32; 2] {
+    let (black, white) = (
+        stored(rescale, window.black()),
+        stored(rescale, window.white()),
+    );
+    if black == white && window.white() < window.black() {
+        return [black, black.next_down()];
+    }
+    [black, white]
+}
+
+/// The same as [`stored`], and how far it is from the value asked for.
 pub fn stored_with_error(rescale: Rescale, physical: f64) -> (f32, f32) {
     let nearest = stored(rescale, physical);
     let error = (rescale.stored(physical) - f64::from(nearest)).abs() as f32;

@@ -28,7 +28,7 @@ impl FromStr for OrbitAxis {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        match text {
+        match text.trim().to_ascii_lowercase().as_str() {
             "up" => return Ok(Self::Up),
             "right" => return Ok(Self::Right),
             "x" => return Ok(Self::World(DVec3::X)),

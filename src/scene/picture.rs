@@ -1,6 +1,7 @@
 //! What is shown: each kind of picture carries what only it needs.
 
 use crate::error::{Error, Result};
+use crate::extent::Range;
 
 use super::{Homogeneity, Phong, Quadrature, Refine, Rgb, TransferFunction};
 
@@ -88,41 +89,52 @@ impl Projection {
     }
 }
 
-/// Values from `low` (black) to `high` (white); the sRGB-encoded grey is linear between.
+/// Values from `black` to `white`, either of which may be the higher one; the sRGB-encoded grey is
+/// linear between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    low: f64,
-    high: f64,
+    black: f64,
+    white: f64,
 }
 
 impl Window {
     /// # Errors
-    /// `low >= high`, or either beyond single precision.
-    pub fn new(low: f64, high: f64) -> Result<Self> {
+    /// The ends are the same value, or either is beyond single precision.
+    pub fn new(black: f64, white: f64) -> Result<Self> {
         let most = f64::from(f32::MAX);
-        if low.abs().max(high.abs()) > most {
+        if black.abs().max(white.abs()) > most {
             return Err(Error::usage(format!(
-                "the window {low:e},{high:e} reaches beyond what a picture's values can: {most:e}"
+                "the window {black:e},{white:e} reaches beyond what a picture's values can: {most:e}"
             )));
         }
-        if !(low.is_finite() && high.is_finite() && low < high) {
+        if !(black.is_finite() && white.is_finite() && black != white) {
             return Err(Error::usage(format!(
-                "the window {low},{high} is empty: its low end must be below its high end"
+                "the window {black},{white} is empty: its ends must be different values"
             )));
         }
-        Ok(Self { low, high })
+        Ok(Self { black, white })
     }
 
-    pub fn low(self) -> f64 {
-        self.low
+    /// The value shown black.
+    pub fn black(self) -> f64 {
+        self.black
     }
 
-    pub fn high(self) -> f64 {
-        self.high
+    /// The value shown white.
+    pub fn white(self) -> f64 {
+        self.white
+    }
+
+    /// The values between the ends: below and above them all are shown as the end is.
+    pub fn range(self) -> Range {
+        Range {
+            min: self.black.min(self.white),
+            max: self.black.max(self.white),
+        }
     }
 
     /// The sRGB-encoded grey of a value, 0..1.
     pub fn grey_srgb(self, value: f64) -> f64 {
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        ((value - self.black) / (self.white - self.black)).clamp(0.0, 1.0)
     }
 }

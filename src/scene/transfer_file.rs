@@ -56,12 +56,18 @@ impl TransferFile {
         PRESETS.iter().map(|(name, _)| *name)
     }
 
+    /// The name and the text of the preset that is called so, in upper or lower case.
+    pub(crate) fn preset(name: &str) -> Option<(&'static str, &'static str)> {
+        let is_it = |(preset, _): &&(&str, &str)| preset.eq_ignore_ascii_case(name.trim());
+        PRESETS.iter().find(is_it).copied()
+    }
+
     /// A preset by its name, else the file of that name.
     ///
     /// # Errors
     /// Neither a preset nor a readable file; anything wrong in the file, with its line.
     pub fn named(name: &str) -> Result<Self> {
-        if let Some((name, text)) = PRESETS.iter().find(|(preset, _)| *preset == name) {
+        if let Some((name, text)) = Self::preset(name) {
             return Self::parse(text, name);
         }
         if name.is_empty() {

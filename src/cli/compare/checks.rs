@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::compare::{Folder, ModeSettings};
+use crate::compare::Folder;
 use crate::error::{Error, Result};
 use crate::scene::options::group::Keys;
 use crate::scene::{ErrorBound, Mode, SceneOptions, TransferChoice};
@@ -11,7 +11,7 @@ use crate::volume::files_of;
 use super::super::load::Source;
 use super::super::outputs;
 
-/// That every flag means something in one of the modes.
+/// That every flag goes with one of the modes.
 pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
     let given = |options: &SceneOptions| {
         let mut keys = options.picture.given();
@@ -19,20 +19,25 @@ pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
         keys
     };
     let means = |key: &String| {
-        let of_mode = |mode: &Mode| given(&ModeSettings::of_mode(*mode, flags));
+        let of_mode = |mode: &Mode| given(&flags.of_mode(*mode));
         modes.iter().any(|mode| of_mode(mode).contains(key))
     };
-    match given(flags).iter().find(|key| !means(key)) {
-        None => Ok(()),
-        Some(key) => {
-            let modes: Vec<String> = modes.iter().map(Mode::to_string).collect();
-            Err(Error::usage(format!(
-                "'{key}' means nothing in any mode that is compared: {}",
-                modes.join(", ")
-            ))
-            .hint("leave it out, or name another mode in '--modes'"))
-        }
+    let given = given(flags);
+    let Some(key) = given.iter().find(|key| !means(key)) else {
+        return Ok(());
+    };
+    if let [mode] = modes {
+        // One mode says why.
+        let mut alone = flags.clone();
+        alone.picture.mode = Some(*mode);
+        alone.checked()?;
     }
+    let modes: Vec<String> = modes.iter().map(Mode::to_string).collect();
+    Err(Error::usage(format!(
+        "'{key}' does not go with any mode that is compared: {}",
+        modes.join(", ")
+    ))
+    .hint("leave it out, or name another mode in '--modes'"))
 }
 
 /// That a bound can choose in one of the modes.

@@ -31,6 +31,8 @@ use page::{about, report};
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
+An option applies to those of the modes that it goes with: --iso and --tf can stand side by side.
+
 What --sampling, --step, --filter and the like say is compared as one setting more, 'as given'; what
 --max-error chooses is another. All are held against the reference of the scene, in linear
 interpolation and with central differences.
@@ -119,6 +121,7 @@ impl CompareArguments {
 
         let bars = Bars::new();
         let loaded = source.load(&bars)?;
+        let options = loaded.measured(options);
         let mut modes = modes
             .into_iter()
             .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))

@@ -49,7 +49,7 @@ impl CompareOptions {
     pub fn of_file(file: &SceneFile) -> Result<Self> {
         let options = file.group::<Self>()?;
         let named_here = |path: FilePath| file.named_here(path);
-        let is_off = |FilePath(path): &FilePath| path.as_os_str() == OFF;
+        let is_off = |FilePath(path): &FilePath| path.as_os_str().eq_ignore_ascii_case(OFF);
         Ok(Self {
             output: options.output.map(named_here),
             configs: options.configs.map(named_here),

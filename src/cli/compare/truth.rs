@@ -13,7 +13,9 @@ use super::options::OFF;
 /// one: to work without it costs nothing but time.
 pub fn truth(asked: Option<FilePath>, volume: &Volume) -> Result<Truth<'_>> {
     match asked {
-        Some(FilePath(path)) if path.as_os_str() == OFF => Ok(Truth::uncached(volume)),
+        Some(FilePath(path)) if path.as_os_str().eq_ignore_ascii_case(OFF) => {
+            Ok(Truth::uncached(volume))
+        }
         Some(FilePath(path)) => Truth::kept_in(&path, volume)
             .map_err(|error| error.hint("name another folder, or write '--cache off'")),
         None => {

@@ -5,15 +5,14 @@ mod options;
 mod plan;
 mod stats;
 
-use crate::VERSION;
-use crate::batch::{Destination, Provenance};
+use crate::batch::Destination;
 use crate::error::Result;
 use crate::scene::Orbit;
 
 use super::engine::Engine;
 use super::job::JobArguments;
 use super::progress::Bars;
-use super::render::gradient_note;
+use super::render::{gradient_note, provenance};
 use super::stopping;
 use super::terminal::{message, note};
 use making::{Made, Making};
@@ -49,13 +48,14 @@ impl OrbitArguments {
     pub fn run(self) -> Result<()> {
         let file = self.job.scene_file()?;
         let options = self.orbit.over(file.group()?);
-        let job = self.job.over(&file)?;
+        let mut job = self.job.over(&file)?;
         let plan = Plan::of(options, &job)?;
         stopping::between_parts("frame", plan.ended_early())?;
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
         let loaded = job.source.load(&bars)?;
+        job.options = loaded.measured(job.options);
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;
@@ -66,11 +66,7 @@ impl OrbitArguments {
             job: &job,
             engine: &engine,
             loaded: &loaded,
-            from: &Provenance {
-                version: VERSION,
-                content: loaded.volume.content_hash().to_hex().to_string(),
-                device: engine.device().name,
-            },
+            from: &provenance(&loaded, &engine),
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();

@@ -138,7 +138,7 @@ fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encodi
                 "use one of .png .exr .jpg .webp .npy with %04d in the name, or .gif .apng .mp4 .webm",
             )
         })?;
-        let encoding = job.output.encoding(path)?;
+        let encoding = job.output.encoding(path, job.options.mode())?;
         let names = FrameNames::of(path)?;
         if options.fps.is_some() {
             return Err(Error::usage(
@@ -151,7 +151,7 @@ fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encodi
         };
         return Ok((pictures, encoding));
     };
-    let encoding = job.output.encoding_of_animation()?;
+    let encoding = job.output.encoding_of_animation(job.options.mode())?;
     let animation = Animation {
         format,
         rate: options.fps.unwrap_or_default(),

@@ -188,7 +188,7 @@ impl PictureRequest {
                 color: color.0,
             },
             Picture::Projection { of, window } => Self::Projection {
-                window: [stored(window.low()), stored(window.high())],
+                window: [stored(window.black()), stored(window.white())],
                 lmip_threshold: match of {
                     Projection::LocalMaximum { threshold } => Some(stored(*threshold)),
                     _ => None,

@@ -165,7 +165,7 @@ impl FromStr for ErrorBound {
             )));
         };
         let metric = (ErrorMetric::ALL.into_iter())
-            .find(|metric| metric.name() == name)
+            .find(|metric| metric.name().eq_ignore_ascii_case(name.trim()))
             .ok_or_else(|| {
                 Error::usage(format!(
                     "'{name}' is not an error metric: write one of {}",
@@ -173,7 +173,8 @@ impl FromStr for ErrorBound {
                 ))
             })?;
         let is_share = matches!(metric, ErrorMetric::Missed | ErrorMetric::Value);
-        let bound = bound.trim();
+        let bound = bound.trim().to_ascii_lowercase();
+        let bound = bound.as_str();
         let read = match (bound.strip_suffix('%'), bound.strip_suffix("vox")) {
             (Some(percent), _) if is_share => number(percent).map(|percent| percent / 100.0),
             (_, Some(voxels)) if metric == ErrorMetric::Depth => number(voxels),

@@ -21,10 +21,18 @@ pub struct SceneFile {
     text: String,
     /// Names the file in errors.
     place: String,
-    /// Against which the files that it names are resolved.
-    folder: PathBuf,
+    /// Where the files that it names are looked for.
+    named: Named,
     /// What of the text it is, if not all.
     part: Option<Part>,
+}
+
+/// Where the files are that a scene names.
+enum Named {
+    /// Relative to this folder.
+    In(PathBuf),
+    /// As the picture's maker named them, else beside this picture, else in the working folder.
+    NearPicture(PathBuf),
 }
 
 /// One table of an array of tables in a TOML text that holds more than a scene.
@@ -39,15 +47,24 @@ pub struct Part {
 
 impl SceneFile {
     /// # Errors
-    /// An unreadable file.
+    /// An unreadable file, one that is no text.
     pub fn read(path: &Path) -> Result<Self> {
         let text = input::text(path, "read the scene")?;
         Ok(Self {
             text,
             place: path.display().to_string(),
-            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            named: Named::In(path.parent().unwrap_or(Path::new("")).to_owned()),
             part: None,
         })
+    }
+
+    /// The text of the scene that a picture carries.
+    pub fn of_picture(text: &str, picture: &Path) -> Self {
+        Self {
+            place: format!("{} (its scene)", picture.display()),
+            named: Named::NearPicture(picture.to_owned()),
+            ..Self::of_text(text, "")
+        }
     }
 
     /// From a scene file's text; `place` names it in errors. The files that it names are relative
@@ -56,7 +73,7 @@ impl SceneFile {
         Self {
             text: text.to_owned(),
             place: place.to_owned(),
-            folder: PathBuf::new(),
+            named: Named::In(PathBuf::new()),
             part: None,
         }
     }
@@ -113,10 +130,33 @@ impl SceneFile {
         Err(error.hint(format!("the options are {}", known.join(", "))))
     }
 
-    /// A file named in this one: relative to it.
+    /// A file named in this one: relative to it; in a picture's scene the first of [`Self::places`] where
+    /// there is one.
     #[must_use]
     pub fn named_here(&self, file: FilePath) -> FilePath {
-        FilePath(self.folder.join(file.0))
+        let places = self.places(&file);
+        let found = places.iter().find(|place| place.exists());
+        FilePath(found.or(places.first()).cloned().unwrap_or(file.0))
+    }
+
+    /// Where a file named in this one is looked for, in this order: relative to it; of a picture's scene
+    /// where the scene says, beside the picture, in the working folder.
+    pub fn places(&self, file: &FilePath) -> Vec<PathBuf> {
+        let FilePath(file) = file;
+        match &self.named {
+            Named::In(folder) => vec![folder.join(file)],
+            Named::NearPicture(picture) => {
+                let beside = picture.parent().unwrap_or(Path::new(""));
+                let name = Path::new(file.file_name().unwrap_or_default());
+                let mut places = vec![file.clone()];
+                for place in [beside.join(file), beside.join(name), name.to_owned()] {
+                    if !places.contains(&place) {
+                        places.push(place);
+                    }
+                }
+                places
+            }
+        }
     }
 
     fn document(&self) -> Result<Spanned<DeTable<'_>>> {

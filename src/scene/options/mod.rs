@@ -15,6 +15,7 @@ mod file;
 mod gradient;
 pub(crate) mod group;
 mod numbers;
+mod of_mode;
 mod picture;
 pub(crate) mod plain;
 mod sampling;
@@ -157,10 +158,32 @@ impl SceneOptions {
         Ok(self)
     }
 
+    /// With each order statistic of the voxels, such as p99.5, replaced by its value, and a sentence on
+    /// each option that named one. `values` gives the physical values of percentages, which are each
+    /// asked for once; `range` is that of the volume, by which the sentences round.
+    #[must_use]
+    pub fn measured(
+        mut self,
+        range: Range,
+        values: impl FnOnce(&[f64]) -> Vec<f64>,
+    ) -> (Self, Vec<String>) {
+        let percents = self.picture.percentiles();
+        if percents.is_empty() {
+            return (self, Vec::new());
+        }
+        let values = values(&percents);
+        let known: Vec<(f64, f64)> = percents.into_iter().zip(values).collect();
+        let named = self.picture.clone();
+        self.picture = self.picture.measured(&known);
+        let notes = named.replaced(&self.picture, range);
+        (self, notes)
+    }
+
     /// The scene for a volume.
     ///
     /// # Errors
-    /// As [`SceneOptions::checked`]; an empty window; an impossible camera.
+    /// As [`SceneOptions::checked`]; an order statistic, which [`SceneOptions::measured`] replaces; an
+    /// empty window; an impossible camera.
     pub fn resolve(&self, subject: &Subject) -> Result<Resolved> {
         let method = self.method();
         let mut options = Self {
@@ -250,46 +273,22 @@ impl SceneOptions {
             ));
         }
         let given = &self.picture;
-        let mut threshold = |key, given: Option<Threshold>, filled: Option<Threshold>| {
-            let Some(Threshold::Value(value)) = filled else {
-                return;
-            };
-            let value = within(value);
-            match given {
-                None => notes.push(format!(
-                    "{key} = {value}, suggested by the histogram: --{key} chooses another"
-                )),
-                Some(Threshold::Value(_)) => {}
-                Some(computed) => notes.push(format!("{key} = {computed} is {value}")),
+        let mut suggested = |key, given: Option<Threshold>, filled: Option<Threshold>| {
+            if let (None, Some(Threshold::Value(value))) = (given, filled) {
+                notes.push(format!(
+                    "{key} = {}, suggested by the histogram: --{key} chooses another",
+                    within(value)
+                ));
             }
         };
-        threshold("iso", given.iso, filled.picture.iso);
-        threshold(
+        suggested("iso", given.iso, filled.picture.iso);
+        suggested(
             "lmip-threshold",
             given.lmip_threshold,
             filled.picture.lmip_threshold,
         );
-        if let Some(Threshold::Value(iso)) = filled.picture.iso
-            && !subject.range.contains(iso)
-        {
-            let Range { min, max } = subject.range;
-            notes.push(format!(
-                "iso = {} lies outside the volume's values, {} to {}: there is no surface",
-                within(iso),
-                within(min),
-                within(max)
-            ));
-        }
-        if let (Some(ends), Some(filled)) = (given.window, filled.picture.window)
-            && ends != filled
-        {
-            let end = |threshold| match threshold {
-                Threshold::Value(value) => within(value),
-                other => other.to_string(),
-            };
-            let (low, high) = (end(filled.low), end(filled.high));
-            notes.push(format!("window = {ends} is {low},{high}"));
-        }
+        notes.extend(given.replaced(&filled.picture, subject.range));
+        notes.extend(filled.picture.no_surface_note(subject.range));
         if subject.robust_range != subject.range && given.takes_robust_range() {
             let (robust, whole) = (subject.robust_range, subject.range);
             notes.push(format!(

@@ -12,11 +12,14 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::gradient::GradientScale;
 use super::group::{Keys, group};
-use super::numbers::{HomogeneityLimit, Reflectance, Shininess, SigmaVoxels, Termination};
+use super::numbers::{
+    HomogeneityLimit, Reflectance, Shininess, SigmaVoxels, Termination, concise_within,
+};
 use super::subject::Subject;
 use super::values::{LightChoice, SrgbColor, Threshold, WindowEnds};
 use super::words::{GradientMethod, Mode, Shading, Switch};
 use crate::error::{Error, Result};
+use crate::extent::Range;
 use crate::scene::{Emission, HomogeneityRule, Quadrature, Refine, TransferFile, TransferUnits};
 
 group! {
@@ -29,9 +32,10 @@ group! {
         #[arg(long, value_name = "MODE")]
         mode: Mode,
 
-        /// iso: the surface's value; a number, a share of the value range such as 50%, or otsu
-        /// [default: suggested by the volume's histogram]
-        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        /// iso: the surface's value; a number, a share of the value range such as 50%, a percentile of
+        /// the voxels such as p99.5 (nearest rank), or otsu [default: suggested by the volume's
+        /// histogram]
+        #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
         iso: Threshold,
 
         /// iso: close the surface where the volume ends or is clipped [default: on]
@@ -43,18 +47,21 @@ group! {
         #[arg(long, value_name = "METHOD[:N]")]
         refine: Refine,
 
-        /// iso: the surface's colour, sRGB r,g,b from 0 to 1 or #rrggbb [default: warm ivory,
-        /// 0.94,0.87,0.76]
+        /// iso: the surface's colour: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as
+        /// ivory [default: warm ivory, 0.94,0.87,0.76]
         #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         color: SrgbColor,
 
-        /// Projections: the values shown black and white; numbers, shares such as 5%, or otsu
-        /// [default: the value range, without a few far-away values and padding]
+        /// Projections: the values shown black and white; numbers, shares of the value range such as
+        /// 5%, percentiles of the voxels such as p99.5, or otsu. HI,LO inverts: what is bright in the
+        /// volume is dark in the picture [default: the value range, without a few far-away values and
+        /// padding]
         #[arg(long, value_name = "LO,HI", allow_hyphen_values = true)]
         window: WindowEnds,
 
-        /// lmip: the value from which a local maximum counts [default: the suggested iso value]
-        #[arg(long, value_name = "VALUE|N%|otsu", allow_hyphen_values = true)]
+        /// lmip: the value from which a local maximum counts, written as that of --iso [default: the
+        /// suggested iso value]
+        #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
         lmip_threshold: Threshold,
 
         /// dvr: the transfer function, a TOML file or a preset: cta (Hounsfield units), mra or
@@ -137,9 +144,7 @@ impl TransferChoice {
     /// The file named, where it is one.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
-            Self::Named(name) if TransferFile::presets().all(|preset| preset != name) => {
-                Some(PathBuf::from(name))
-            }
+            Self::Named(name) if TransferFile::preset(name).is_none() => Some(PathBuf::from(name)),
             _ => None,
         }
     }
@@ -230,6 +235,12 @@ const BELONGS: [Belongs; 20] = [
     Belongs { key: "gradient-smooth", modes: LIT, why: NO_NORMALS },
 ];
 
+/// Whether a key, other than `mode` itself, means something to the mode.
+pub(super) fn belongs_to(key: &str, mode: Mode) -> bool {
+    let belongs = |b: &Belongs| b.key == key && b.modes.contains(&mode);
+    BELONGS.iter().any(belongs)
+}
+
 impl PictureOptions {
     pub(super) fn mode(&self) -> Mode {
         self.mode.unwrap_or(Mode::Iso)
@@ -256,10 +267,7 @@ impl PictureOptions {
                 .filter(|_| LIT.contains(&mode) && LIT.contains(&file.mode()));
             file = Self {
                 shading,
-                ..file.keeping(|key| {
-                    let belongs = |b: &Belongs| b.key == key && b.modes.contains(&mode);
-                    key != "mode" && BELONGS.iter().any(belongs)
-                })
+                ..file.keeping(|key| belongs_to(key, mode))
             };
             let shading = self.shading.or(shading);
             if shading.is_none_or(|s| s == Shading::None) {
@@ -289,7 +297,7 @@ impl PictureOptions {
         file
     }
 
-    fn unlit(self) -> Self {
+    pub(super) fn unlit(self) -> Self {
         self.keeping(|key| !LIGHT.contains(&key))
     }
 
@@ -364,6 +372,93 @@ impl PictureOptions {
         }
     }
 
+    /// Of filled options: why a surface's iso value outside the volume's values shows no surface, and
+    /// what it shows.
+    pub(super) fn no_surface_note(&self, range: Range) -> Option<String> {
+        let Some(Threshold::Value(iso)) = self.iso else {
+            return None;
+        };
+        if range.contains(iso) {
+            return None;
+        }
+        let capped = self.caps.is_none_or(Switch::is_on);
+        let (side, shown) = match (iso < range.min, capped) {
+            (true, true) => (
+                "below",
+                "all of the volume is inside, and only its caps are shown, where it ends or is clipped",
+            ),
+            (true, false) => (
+                "below",
+                "all of the volume is inside, and without caps nothing is shown",
+            ),
+            (false, _) => ("above", "nothing is shown"),
+        };
+        Some(format!(
+            "iso = {} lies {side} the volume's values, {} to {}: there is no surface, {shown}",
+            concise_within(iso, range),
+            concise_within(range.min, range),
+            concise_within(range.max, range)
+        ))
+    }
+
+    /// A sentence on each value that was written otherwise than as the number that `by` has for it.
+    pub(super) fn replaced(&self, by: &Self, range: Range) -> Vec<String> {
+        let shown = |threshold| match threshold {
+            Threshold::Value(value) => concise_within(value, range),
+            other => other.to_string(),
+        };
+        let of = |key: &str, written: Option<Threshold>, by: Option<Threshold>| {
+            let (written, by) = (written?, by?);
+            (written != by).then(|| format!("{key} = {written} is {}", shown(by)))
+        };
+        let window = self.window.zip(by.window);
+        let window = window.filter(|(written, by)| written != by);
+        [
+            of("iso", self.iso, by.iso),
+            of("lmip-threshold", self.lmip_threshold, by.lmip_threshold),
+            window.map(|(written, by)| {
+                format!(
+                    "window = {written} is {},{}",
+                    shown(by.black),
+                    shown(by.white)
+                )
+            }),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// With each order statistic of the voxels replaced by the value that it has among `known`.
+    pub(super) fn measured(self, known: &[(f64, f64)]) -> Self {
+        let value = |threshold: Threshold| {
+            let known = threshold
+                .percentile()
+                .and_then(|percent| known.iter().find(|(of, _)| *of == percent));
+            known.map_or(threshold, |(_, value)| Threshold::Value(*value))
+        };
+        Self {
+            iso: self.iso.map(value),
+            lmip_threshold: self.lmip_threshold.map(value),
+            window: self.window.map(|ends| WindowEnds {
+                black: value(ends.black),
+                white: value(ends.white),
+            }),
+            ..self
+        }
+    }
+
+    /// The percentages of the order statistics that are named, each once.
+    pub(super) fn percentiles(&self) -> Vec<f64> {
+        let ends = self.window.map(|ends| [ends.black, ends.white]);
+        let named = ends.into_iter().flatten();
+        let named = named.chain(self.iso).chain(self.lmip_threshold);
+        let mut percents: Vec<f64> = named.filter_map(Threshold::percentile).collect();
+        percents.sort_by(f64::total_cmp);
+        percents.dedup();
+        percents
+    }
+
     /// With every default of its mode in its place, every value physical, and the transfer
     /// function written out: filling again changes nothing.
     pub(super) fn filled(self, subject: &Subject) -> Result<Self> {
@@ -371,8 +466,11 @@ impl PictureOptions {
         let mode = self.mode();
         let lit = self.lit()?;
         let value = |threshold: Option<Threshold>, default: f64| {
-            let value = threshold.map_or(default, |t| t.resolve(subject));
-            Some(Threshold::Value(value))
+            let value = match threshold {
+                Some(threshold) => threshold.resolve(subject)?,
+                None => default,
+            };
+            Ok(Some(Threshold::Value(value)))
         };
         let bare = Self {
             mode: Some(mode),
@@ -380,7 +478,7 @@ impl PictureOptions {
         };
         Ok(match mode {
             Mode::Iso => Self {
-                iso: value(self.iso, subject.suggested_iso),
+                iso: value(self.iso, subject.suggested_iso)?,
                 caps: self.caps.or(Some(Switch::On)),
                 refine: self.refine.or(Some(Refine::default())),
                 color: self.color.or(Some(Self::IVORY)),
@@ -388,12 +486,12 @@ impl PictureOptions {
                 ..lit
             },
             Mode::Mip | Mode::Minip | Mode::Mean => Self {
-                window: Some(window_values(self.window, subject)),
+                window: Some(window_values(self.window, subject)?),
                 ..bare
             },
             Mode::Lmip => Self {
-                window: Some(window_values(self.window, subject)),
-                lmip_threshold: value(self.lmip_threshold, subject.suggested_iso),
+                window: Some(window_values(self.window, subject)?),
+                lmip_threshold: value(self.lmip_threshold, subject.suggested_iso)?,
                 ..bare
             },
             Mode::Dvr => {
@@ -423,20 +521,20 @@ impl PictureOptions {
 }
 
 /// The robust value range where no window is given; a constant volume is middle grey.
-fn window_values(window: Option<WindowEnds>, subject: &Subject) -> WindowEnds {
+fn window_values(window: Option<WindowEnds>, subject: &Subject) -> Result<WindowEnds> {
     let range = subject.robust_range;
-    let (low, high) = match window {
-        Some(ends) => (ends.low.resolve(subject), ends.high.resolve(subject)),
+    let (black, white) = match window {
+        Some(ends) => (ends.black.resolve(subject)?, ends.white.resolve(subject)?),
         None if range.min < range.max => (range.min, range.max),
         None => {
             let margin = f64::max(0.5, range.min.abs() * 1e-3);
             (range.min - margin, range.max + margin)
         }
     };
-    WindowEnds {
-        low: Threshold::Value(low),
-        high: Threshold::Value(high),
-    }
+    Ok(WindowEnds {
+        black: Threshold::Value(black),
+        white: Threshold::Value(white),
+    })
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ impl PictureOptions {
         let projection = |of| {
             let ends = self.window;
             let end = |pick: fn(WindowEnds) -> Threshold| value(ends.map(pick));
-            let window = Window::new(end(|w| w.low), end(|w| w.high))?;
+            let window = Window::new(end(|w| w.black), end(|w| w.white))?;
             Ok(Picture::Projection { of, window })
         };
         match self.mode() {

@@ -11,7 +11,8 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Display (PNG, JPEG, WebP)")]
     pub struct ToneOptions {
-        /// Colour behind everything: sRGB r,g,b from 0 to 1, or #rrggbb [default: 0,0,0]
+        /// Colour behind everything: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as white
+        /// [default: 0,0,0]
         #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         background: SrgbColor,
 

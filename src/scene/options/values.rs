@@ -11,22 +11,43 @@ use super::subject::Subject;
 use crate::error::{Error, Result};
 use crate::scene::Light;
 
-/// A value of the volume: as it is, as a share of the value range, or Otsu's threshold.
+/// A value of the volume: as it is, as a share of the value range, as an order statistic of the
+/// voxels, or Otsu's threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
     Value(f64),
     /// A share of the value range, 0 to 100 percent, as written.
     Percent(f64),
+    /// The smallest voxel value that at least this percentage of the voxels do not exceed (the nearest
+    /// rank), 0 to 100: 0 is the minimum.
+    Percentile(f64),
     Otsu,
 }
 
 impl Threshold {
-    /// The physical value.
-    pub fn resolve(self, subject: &Subject) -> f64 {
+    /// The percentage, where it is an order statistic.
+    pub fn percentile(self) -> Option<f64> {
         match self {
-            Self::Value(value) => value,
-            Self::Percent(percent) => subject.range.at(percent / 100.0),
-            Self::Otsu => subject.otsu,
+            Self::Percentile(percent) => Some(percent),
+            _ => None,
+        }
+    }
+
+    /// The physical value.
+    ///
+    /// # Errors
+    /// Usage: an order statistic, which takes the voxels: [`SceneOptions::measured`] puts its value in
+    /// its place.
+    ///
+    /// [`SceneOptions::measured`]: super::SceneOptions::measured
+    pub fn resolve(self, subject: &Subject) -> Result<f64> {
+        match self {
+            Self::Value(value) => Ok(value),
+            Self::Percent(percent) => Ok(subject.range.at(percent / 100.0)),
+            Self::Percentile(_) => Err(Error::usage(format!(
+                "'{self}' is an order statistic of the voxels, which are not known here"
+            ))),
+            Self::Otsu => Ok(subject.otsu),
         }
     }
 }
@@ -36,20 +57,30 @@ impl FromStr for Threshold {
 
     fn from_str(text: &str) -> Result<Self> {
         let text = text.trim();
-        if text == "otsu" {
+        if text.eq_ignore_ascii_case("otsu") {
             return Ok(Self::Otsu);
         }
+        let percentage = |text: &str| {
+            let percent = number(text).ok();
+            percent.filter(|percent| (0.0..=100.0).contains(percent))
+        };
         if let Some(percent) = text.strip_suffix('%') {
-            return match number(percent) {
-                Ok(p) if (0.0..=100.0).contains(&p) => Ok(Self::Percent(p)),
-                _ => Err(Error::usage(format!(
+            return percentage(percent).map(Self::Percent).ok_or_else(|| {
+                Error::usage(format!(
                     "'{text}' is not a share of the value range: write 0% to 100%"
-                ))),
-            };
+                ))
+            });
+        }
+        if let Some(percent) = text.strip_prefix(['p', 'P']) {
+            return percentage(percent).map(Self::Percentile).ok_or_else(|| {
+                Error::usage(format!(
+                    "'{text}' is not a percentile of the voxels: write p0 to p100, such as p99.5"
+                ))
+            });
         }
         let value = number(text).map_err(|_| {
             Error::usage(format!(
-                "'{text}' is not a value: write a number, a share of the value range such as 50%, or otsu"
+                "'{text}' is not a value: write a number, a share of the value range such as 50%, a percentile of the voxels such as p99.5, or otsu"
             ))
         })?;
         // As far as single precision goes: no voxel lies beyond.
@@ -67,6 +98,7 @@ impl fmt::Display for Threshold {
         match self {
             Self::Value(value) => write!(f, "{value}"),
             Self::Percent(percent) => write!(f, "{percent}%"),
+            Self::Percentile(percent) => write!(f, "p{percent}"),
             Self::Otsu => f.write_str("otsu"),
         }
     }
@@ -95,7 +127,7 @@ impl fmt::Display for Triple {
     }
 }
 
-/// An sRGB-encoded colour, channels 0..1: `r,g,b` or `#rrggbb`.
+/// An sRGB-encoded colour, channels 0..1: `r,g,b`, `#rrggbb`, `#rgb`, or one of CSS's colour names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SrgbColor(pub [f64; 3]);
 
@@ -105,14 +137,19 @@ impl FromStr for SrgbColor {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::usage(format!(
-                "'{text}' is not a colour: write r,g,b from 0 to 1, or #rrggbb"
+                "'{text}' is not a colour: write r,g,b from 0 to 1, #rrggbb, #rgb, or a colour's CSS name such as white"
             ))
         };
-        if let Some(digits) = text.strip_prefix('#') {
-            let hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
-            let packed = u32::from_str_radix(digits, 16).ok().filter(|_| hex);
-            let [_, r, g, b] = packed.ok_or_else(wrong)?.to_be_bytes();
-            return Ok(Self([r, g, b].map(|byte| f64::from(byte) / 255.0)));
+        let text = text.trim();
+        let is_hex = text.starts_with('#') && matches!(text.len(), 4 | 7);
+        let is_name = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_alphabetic());
+        if is_hex || is_name {
+            // Of what CSS writes more than that, nothing is an opaque colour by its name.
+            let color = text.parse::<csscolorparser::Color>().map_err(|_| wrong())?;
+            let [r, g, b, alpha] = color.to_rgba8();
+            let opaque = alpha == u8::MAX;
+            let channels = opaque.then_some([r, g, b]).ok_or_else(wrong)?;
+            return Ok(Self(channels.map(|byte| f64::from(byte) / 255.0)));
         }
         let Triple(rgb) = text.parse().map_err(|_| wrong())?;
         if rgb.min_element() < 0.0 || rgb.max_element() > 1.0 {
@@ -151,7 +188,7 @@ impl FromStr for LightChoice {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if text == "headlight" {
+        if text.trim().eq_ignore_ascii_case("headlight") {
             return Ok(Self::Headlight);
         }
         let direction = text.parse::<Triple>().map(|Triple(d)| d);
@@ -173,32 +210,33 @@ impl fmt::Display for LightChoice {
     }
 }
 
-/// `--window LO,HI`: the values shown black and white.
+/// `--window LO,HI`: the values shown black and white. The first may be the higher one: then what is
+/// bright in the volume is dark in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowEnds {
-    pub low: Threshold,
-    pub high: Threshold,
+    pub black: Threshold,
+    pub white: Threshold,
 }
 
 impl FromStr for WindowEnds {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let Some((low, high)) = text.split_once(',') else {
+        let Some((black, white)) = text.split_once(',') else {
             return Err(Error::usage(format!(
-                "'{text}' is not a window: write LO,HI, such as 100,500 or 5%,60%"
+                "'{text}' is not a window: write LO,HI, such as 100,500, 5%,60% or p1,p99.5"
             )));
         };
         Ok(Self {
-            low: low.parse()?,
-            high: high.parse()?,
+            black: black.parse()?,
+            white: white.parse()?,
         })
     }
 }
 
 impl fmt::Display for WindowEnds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{},{}", self.low, self.high)
+        write!(f, "{},{}", self.black, self.white)
     }
 }
 

@@ -92,8 +92,9 @@ group! {
         #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
         raw_offset: u64,
 
-        /// Edge of the octree's leaves in voxels, 4 to 32; never changes the picture [default: 4]
-        #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
+        /// Edge of the octree's leaves in cells (a cell lies between 8 voxel centres), 4 to 32; never
+        /// changes the picture [default: 4]
+        #[arg(long, value_name = "CELLS", allow_hyphen_values = true)]
         octree_leaf: u32,
     }
 }

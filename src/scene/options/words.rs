@@ -5,7 +5,7 @@ use crate::scene::{
     Filter, HomogeneityRule, QuadratureMethod, RefineMethod, SamplingMethod, Storage, Traverse,
 };
 
-/// Gives an enum its names: `FromStr`, `Display`.
+/// Gives an enum its names: `FromStr` (upper and lower case alike), `Display`.
 macro_rules! words {
     ($type:ty, $what:literal: $($variant:ident = $name:literal),+ $(,)?) => {
         impl $type {
@@ -16,7 +16,8 @@ macro_rules! words {
             type Err = crate::error::Error;
 
             fn from_str(text: &str) -> crate::error::Result<Self> {
-                let found = Self::NAMES.iter().find(|(name, _)| *name == text);
+                let is_it = |(name, _): &&(&str, Self)| name.eq_ignore_ascii_case(text.trim());
+                let found = Self::NAMES.iter().find(is_it);
                 found.map(|(_, choice)| *choice).ok_or_else(|| {
                     let names: Vec<&str> = Self::NAMES.iter().map(|(name, _)| *name).collect();
                     crate::error::Error::usage(format!(

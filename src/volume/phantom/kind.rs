@@ -83,7 +83,7 @@ impl FromStr for PhantomKind {
     fn from_str(text: &str) -> Result<Self> {
         Self::ALL
             .into_iter()
-            .find(|kind| kind.name() == text)
+            .find(|kind| kind.name().eq_ignore_ascii_case(text.trim()))
             .ok_or_else(|| {
                 Error::usage(format!("there is no phantom '{text}'")).hint(format!(
                     "the phantoms are {}",

@@ -127,7 +127,8 @@ impl FromStr for RawType {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let (name, endian) = split_endian(text);
+        let lower = text.trim().to_ascii_lowercase();
+        let (name, endian) = split_endian(&lower);
         Self::SCALARS
             .into_iter()
             .find(|scalar| scalar.name() == name)

@@ -89,7 +89,7 @@ impl HardCase {
             Some((case, member)) => (case, Some(member)),
             None => (name, None),
         };
-        let Some(case) = Self::all().find(|each| each.name == case) else {
+        let Some(case) = Self::all().find(|each| each.name.eq_ignore_ascii_case(case)) else {
             let names: Vec<&str> = Self::all().map(|each| each.name).collect();
             return Err(Error::usage(format!("there is no hard case '{case}'"))
                 .hint(format!("the hard cases are {}", names.join(", "))));

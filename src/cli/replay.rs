@@ -1,0 +1,222 @@
+//! `angioray replay`.
+
+use std::path::{Path, PathBuf};
+
+use crate::VERSION;
+use crate::error::{Error, ErrorKind, Result};
+use crate::frame::{Format, read_encoding};
+use crate::scene::options::group::group;
+use crate::scene::{FilePath, SceneOptions};
+use crate::volume::files_of;
+
+use super::carried::Carried;
+use super::engine::{DeviceName, DeviceOptions, Engine};
+use super::job::Job;
+use super::load::{Loaded, Source};
+use super::outputs::{Files, OutputOptions};
+use super::progress::Bars;
+use super::render::{Drawing, draw};
+use super::scene::SceneArgument;
+use super::terminal::note;
+
+/// Render a picture again, from the scene that it carries
+///
+/// The volume is looked for where the picture says, beside the picture, and in the working folder, and
+/// must have the content that it had. On the same device the picture is the same, byte for byte; what
+/// OUT is encoded with is what IMAGE is, where both have one format and nothing else is said.
+#[derive(clap::Args)]
+#[command(override_usage = "angioray replay IMAGE -o OUT [OPTIONS]")]
+#[command(after_help = "Example:
+  angioray replay head.png -o again.png
+  angioray replay head.png -o again.exr --aov depth,normal --volume archive/head.nrrd
+  angioray replay frames/0012.png -o large.png --bit-depth 16 --device reference
+
+'angioray render --scene head.png --size 1024x1024 -o large.png' takes the scene and changes it.")]
+pub struct ReplayArguments {
+    #[command(flatten)]
+    replay: ReplayOptions,
+
+    #[command(flatten)]
+    output: OutputOptions,
+
+    #[command(flatten)]
+    scene: SceneArgument,
+
+    #[command(flatten)]
+    device: DeviceOptions,
+}
+
+group! {
+    /// Which picture, and of what.
+    pub struct ReplayOptions {
+        /// The picture: a .png or .exr that render or orbit wrote
+        #[arg(value_name = "IMAGE")]
+        image: FilePath,
+
+        /// The volume, where it lies elsewhere than the picture says; its content must be the same
+        #[arg(long, value_name = "FILE")]
+        volume: FilePath,
+    }
+}
+
+impl ReplayArguments {
+    pub fn run(self) -> Result<()> {
+        let file = self.scene.open()?;
+        let of_file = file.group::<ReplayOptions>()?;
+        let replay = self.replay.over(ReplayOptions {
+            image: of_file.image.map(|path| file.named_here(path)),
+            volume: of_file.volume.map(|path| file.named_here(path)),
+        });
+        let Some(FilePath(image)) = replay.image else {
+            return Err(Error::usage("no picture was named")
+                .hint("give its file as the first argument, or as 'image' in the scene file"));
+        };
+        let Some(carried) = Carried::of(&image)? else {
+            return Err(Error::input(format!(
+                "{}: no picture that carries a scene: neither a .png nor an .exr",
+                image.display()
+            )));
+        };
+        let options = SceneOptions::of_whole(&carried.scene_file())?.checked()?;
+        let stored = SceneOptions::parse(&carried.scene, "")?.volume.volume;
+        let Some(stored) = stored else {
+            return Err(Error::input(format!(
+                "{}: its scene names no volume",
+                image.display()
+            )));
+        };
+        let places = match &replay.volume {
+            Some(FilePath(path)) => vec![path.clone()],
+            None => carried.scene_file().places(&stored),
+        };
+        let of_file = OutputOptions::of_file(&file)?;
+        let of_file = self.output.keep_of(Some(options.mode()), of_file);
+        let output = self.output.over(of_file);
+        let files = as_it_was(output.clone().files(options.mode())?, &output, &carried)?;
+        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over(device);
+        let engine = open(device.clone(), &carried)?;
+
+        let mut inputs = vec![image];
+        inputs.extend(self.scene.path().map(Path::to_owned));
+        places.iter().for_each(|path| inputs.extend(files_of(path)));
+        files.check(&inputs)?;
+        let bars = Bars::new();
+        let (source, loaded) = found(&places, &options, &carried, &bars)?;
+        let mut options = source.stored(options);
+        options.volume.volume = Some(replay.volume.unwrap_or(stored));
+        let job = Job {
+            options,
+            bound: None,
+            output,
+            device,
+            source,
+            inputs,
+        };
+        tell_version(&carried);
+        draw(Drawing {
+            command: "replay",
+            job: &job,
+            files: &files,
+            engine: &engine,
+            loaded: &loaded,
+            bars: &bars,
+        })
+    }
+}
+
+/// The files that are written: a picture of the same format as it was, where nothing else is said.
+fn as_it_was(mut files: Files, output: &OutputOptions, carried: &Carried) -> Result<Files> {
+    if files.encoding.format != carried.format {
+        return Ok(files);
+    }
+    let was = read_encoding(&carried.picture)?;
+    if output.bit_depth.is_none() {
+        files.encoding.bit_depth = was.bit_depth;
+    }
+    if output.aov.is_none() && carried.format == Format::Exr {
+        files.encoding.layers = was.layers;
+    }
+    Ok(files)
+}
+
+/// What renders: what is asked for, else what rendered the picture, where it is here.
+fn open(mut device: DeviceOptions, carried: &Carried) -> Result<Engine> {
+    if device.device.is_some() {
+        return Engine::open(&device);
+    }
+    let Some(name) = &carried.device else {
+        return Engine::open(&device);
+    };
+    device.device = Some(DeviceName::of(name));
+    match Engine::open(&device) {
+        Err(error) if error.kind() == ErrorKind::NoDevice => {}
+        opened => return opened,
+    }
+    device.device = None;
+    let engine = Engine::open(&device)?;
+    note(format_args!(
+        "the picture was rendered on {name}, which is not here: on {} it may differ in its last bits",
+        engine.device().name
+    ));
+    Ok(engine)
+}
+
+/// The volume that the picture was rendered of: the first of `places` where a volume of the same content
+/// is.
+///
+/// # Errors
+/// There is none, or only others (input); the last one cannot be read.
+fn found(
+    places: &[PathBuf],
+    options: &SceneOptions,
+    carried: &Carried,
+    bars: &Bars,
+) -> Result<(Source, Loaded)> {
+    let there: Vec<&PathBuf> = places.iter().filter(|place| place.exists()).collect();
+    let shown = |places: &[&PathBuf]| {
+        let names = places.iter().map(|place| place.display().to_string());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    if there.is_empty() {
+        let places: Vec<&PathBuf> = places.iter().collect();
+        return Err(Error::input(format!(
+            "{}: its volume is not there; looked for {}",
+            carried.picture.display(),
+            shown(&places)
+        ))
+        .hint("say where it is by --volume FILE"));
+    }
+    for (at, place) in there.iter().enumerate() {
+        let mut volume = options.volume.clone();
+        volume.volume = Some(FilePath(place.to_path_buf()));
+        let source = Source::of(&volume)?;
+        let loaded = match source.load(bars) {
+            Err(error) if at + 1 == there.len() => return Err(error),
+            Err(_) => continue,
+            Ok(loaded) => loaded,
+        };
+        let Some(content) = &carried.content else {
+            note("the picture does not say what its volume's content was: it is taken as it is");
+            return Ok((source, loaded));
+        };
+        if *content == loaded.content() {
+            return Ok((source, loaded));
+        }
+    }
+    Err(Error::input(format!(
+        "{}: not the volume that {} was rendered of: its content is another",
+        shown(&there),
+        carried.picture.display()
+    ))
+    .hint("say where that is by --volume FILE"))
+}
+
+/// Says so where another version of the program made the picture.
+fn tell_version(carried: &Carried) {
+    if let Some(version) = carried.version.as_ref().filter(|made| *made != VERSION) {
+        note(format_args!(
+            "the picture was made by angioray {version}: this is {VERSION}, whose picture may differ"
+        ));
+    }
+}

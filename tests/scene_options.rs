@@ -106,6 +106,48 @@ fn a_projection_shows_the_whole_range_unless_told() {
     assert!(flags(&["--mode", "mip"]).resolve(&constant).is_ok());
 }
 
+/// Two voxels at the ends of the range do not make the defaults; shares of it are still its own.
+#[test]
+fn defaults_are_made_for_the_robust_range() {
+    let outliers = Subject {
+        range: Range {
+            min: -3024.0,
+            max: 30_000.0,
+        },
+        ..SUBJECT
+    };
+    let of = |line: &[&str]| flags(line).resolve(&outliers).unwrap();
+    let window = |line: &[&str]| match of(line).scene.picture {
+        Picture::Projection { window, .. } => (window.low(), window.high()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(window(&["--mode", "mip"]), (-100.0, 300.0));
+    let whole = ["--mode", "mip", "--window", "0%,100%"];
+    assert_eq!(window(&whole), (-3024.0, 30_000.0));
+    let ends = |line: &[&str]| match of(line).scene.picture {
+        Picture::Emission(emission) => {
+            let knots = emission.transfer.knots();
+            (knots[0].value, knots[knots.len() - 1].value)
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(ends(&["--mode", "dvr", "--tf", "3dra"]), (-100.0, 300.0));
+    let note = "the defaults are made for the values -100 to 300: a few far-away ones, or padding, reach -3024 to 30000";
+    let is_noted = |line: &[&str]| of(line).notes.iter().any(|found| found == note);
+    for line in [&["--mode", "mip"][..], &["--mode", "dvr"], &[]] {
+        assert!(is_noted(line), "{line:?}");
+    }
+    // The controls: what needs no such default, and a volume without outliers.
+    for line in [
+        &whole[..],
+        &["--iso", "50%"],
+        &["--mode", "dvr", "--tf", "cta"],
+    ] {
+        assert!(!is_noted(line), "{line:?}");
+    }
+    assert!(resolved(&flags(&["--mode", "mip"])).notes.is_empty());
+}
+
 /// Scenes of every kind, far from the defaults.
 #[rustfmt::skip]
 const SCENES: [&[&str]; 10] = [

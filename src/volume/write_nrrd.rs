@@ -112,13 +112,13 @@ fn physical_voxels(volume: &Volume) -> Result<Vec<f64>> {
     volume.voxels().each_with(|stored| rescale.physical(stored))
 }
 
-/// The same values as f32; `None` where some would lose digits that tell them apart: more than
-/// rounding a product with the slope does.
+/// The same values as f32; `None` where rounding would move one by more than a millionth of their
+/// range.
 fn in_single_precision(values: &[f64]) -> Result<Option<Vec<f32>>> {
     let (min, max) = (values.iter()).fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), &v| {
         (min.min(v), max.max(v))
     });
-    let close = (max - min) * f64::from(f32::EPSILON);
+    let close = (max - min) * 1e-6;
     let mut singles = memory::room(values.len(), format_args!("{} voxels of f32", values.len()))?;
     for &value in values {
         let single = value as f32;

@@ -5,6 +5,7 @@
 mod common;
 mod extremes;
 mod grid;
+mod offsets;
 mod rounding;
 mod values;
 

@@ -7,8 +7,10 @@ use std::path::Path;
 
 use angioray::error::ErrorKind;
 use angioray::extent::Dims;
+use angioray::progress::Silent;
 use angioray::volume::{
-    Geometry, NonFinite, PhantomKind, Rescale, Volume, VoxelType, Voxels, phantom, write_nrrd,
+    Geometry, NonFinite, PhantomKind, ReadOptions, Rescale, Volume, VoxelType, Voxels, phantom, read,
+    write_nrrd,
 };
 use flate2::read::GzDecoder;
 use glam::{DMat3, DVec3};
@@ -138,6 +140,40 @@ fn oblique_geometry_is_written_to_the_last_digit() {
         .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
         .collect();
     assert_eq!(floats, [-997.5, -992.5]);
+}
+
+/// Values far from zero do not fit single precision: they are written, and read, as doubles.
+#[test]
+fn values_far_from_zero_keep_their_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.nrrd");
+    for (intercept, kind) in [(1e9, "double"), (-1000.0, "float")] {
+        let rescale = Rescale {
+            slope: 0.1,
+            intercept,
+        };
+        let voxels: Vec<i16> = vec![0, 1, 500, 1026];
+        let (dims, geometry) = (Dims::new([4, 1, 1]).unwrap(), Geometry::default());
+        let volume = Volume::new(
+            dims,
+            voxels.clone().into(),
+            geometry,
+            rescale,
+            NonFinite::Refuse,
+        )
+        .unwrap();
+        write_nrrd(&volume, &path, false).unwrap();
+        assert_eq!(parse(&path).0["type"], kind);
+        let back = read(&path, &ReadOptions::default(), &Silent).unwrap();
+        for (i, &voxel) in voxels.iter().enumerate() {
+            let found = back.rescale().physical(back.voxels().stored(i));
+            let right = 0.1 * f64::from(voxel) + intercept;
+            assert!(
+                (found - right).abs() < 1e-4,
+                "{intercept}: {found} for {right}"
+            );
+        }
+    }
 }
 
 #[test]

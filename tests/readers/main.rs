@@ -2,6 +2,7 @@
 //! and compared with what was put in: the ramp's formula and the geometry, in LPS.
 
 mod arrays;
+mod cases;
 mod images;
 
 use std::path::{Path, PathBuf};

@@ -71,7 +71,11 @@ typedef struct {
 static inline Medium lit_at(VOXELS voxels, const Sight *sight, const Piece *piece, Floats u, Medium medium)
 {
 #if HAS_GRADIENT
+#if FILTER_LINEAR
     Floats s = piece->from + piece->width * u;
+#else
+    Floats s = FLOATS(0.5f); // a cell has one gradient; what lies on its walls may be read from the next
+#endif
     Floats3 p = {piece->near.x + s * piece->way.x, piece->near.y + s * piece->way.y, piece->near.z + s * piece->way.z};
     p = clamp_to_domain(sight->volume, p);
     return lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);

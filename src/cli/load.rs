@@ -105,6 +105,7 @@ impl Source {
         let subject = Subject {
             center_world,
             radius_mm,
+            spacing_mm: volume.geometry().spacing_mm(),
             range: volume.range(),
             otsu: histogram.otsu(),
             suggested_iso: suggested_iso(&histogram),

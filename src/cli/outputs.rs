@@ -22,7 +22,8 @@ group! {
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast,
         /// kind, certificate (iso, exact sampling: 0 proven to miss, 1 proven to hit, 2 undecided),
-        /// with commas between, or all
+        /// with commas between, or all; in dvr depth, normal and value are means along the ray, weighted
+        /// as its light is, where the opacity is 0.01 at least
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 

@@ -35,7 +35,11 @@ pub fn stand_ins(octree: &Octree, filter: Filter) -> Cow<'_, [f32]> {
         Filter::Nearest => {
             let ranges = octree.ranges()[..leaves].iter();
             let nearer = |(&average, &[min, max]): (&f32, &[f32; 2])| {
-                if average - min <= max - average { min } else { max }
+                if average - min <= max - average {
+                    min
+                } else {
+                    max
+                }
             };
             averages.iter().zip(ranges).map(nearer).collect()
         }

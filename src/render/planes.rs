@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::frame::{Certificate, Frame, Kind, Wanted};
-use crate::scene::Emission;
 use crate::gpu::{Buffer, Device, DeviceKind, Element};
+use crate::scene::Emission;
 use crate::volume::Rescale;
 
 use super::passes::Counters;

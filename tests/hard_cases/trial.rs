@@ -199,6 +199,7 @@ pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String,
     let subject = Subject {
         center_world,
         radius_mm,
+        spacing_mm: volume.geometry().spacing_mm(),
         range: volume.range(),
         otsu: histogram.otsu(),
         suggested_iso: suggested_iso(&histogram),

@@ -44,9 +44,7 @@ impl EmissionPlanes {
         if self.place.is_some() {
             parameters.extend([output::<f32>("depth"), output::<f32>("value")]);
         }
-        parameters.extend(
-            (self.normal.iter()).map(|_| output::<[f32; 4]>("normal")),
-        );
+        parameters.extend((self.normal.iter()).map(|_| output::<[f32; 4]>("normal")));
         parameters.extend(Counters::parameters(self.counters.is_some()));
         parameters
     }

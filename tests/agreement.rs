@@ -8,7 +8,7 @@ use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
     Camera, ClipPlane, Emission, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection,
-    Reflection, Rgb, Scene, Tone, TransferFunction, Window,
+    Quadrature, Reflection, Rgb, Scene, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -22,12 +22,17 @@ const SIZE_PX: u32 = 56;
 
 #[derive(Debug, Clone, Copy)]
 enum Look {
-    Iso { refine: &'static str, caps: bool },
+    Iso {
+        refine: &'static str,
+        caps: bool,
+    },
     Mip,
     Minip,
     Mean,
     Lmip,
+    /// By the default rule; by another.
     Dvr,
+    DvrBy(&'static str),
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -144,6 +149,20 @@ const ROWS: &[Row] = &[
     Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
     Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
     Row { look: Look::Dvr, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(AlphaMax, 0.03)], ..PLAIN },
+    // Its layers, by every rule; pixels at the opacity from which there are any may have them or not.
+    Row { look: Look::DvrBy("riemann"), step_voxels: 0.25, limits: &[(Kind, 0.01), (DepthMean, 0.2), (NormalMean, 5.0), (ValueMean, 0.02)], ..PLAIN },
+    Row { look: Look::DvrBy("midpoint"), step_voxels: 0.25, limits: &[(Kind, 0.01), (DepthMean, 0.02), (DepthP99, 0.3), (NormalMean, 1.0), (ValueMean, 0.002)], ..PLAIN },
+    Row { look: Look::DvrBy("simpson"), limits: &[(Kind, 0.01), (DepthMean, 0.02), (DepthP99, 0.3), (NormalMean, 1.0), (ValueMean, 0.002)], ..PLAIN },
+    Row { look: Look::DvrBy("romberg"), limits: &[(Kind, 0.005), (DepthMean, 0.01), (DepthP99, 0.1), (NormalMean, 0.5), (ValueMean, 1e-3)], ..PLAIN },
+    Row { look: Look::DvrBy("rk4"), limits: &[(Kind, 0.01), (DepthMean, 0.02), (DepthP99, 0.3), (NormalMean, 1.0), (ValueMean, 0.002)], ..PLAIN },
+    Row { look: Look::DvrBy("preintegrated"), step_voxels: 0.25, limits: &[(Kind, 0.01), (DepthMean, 0.02), (DepthP99, 0.3), (NormalMean, 1.0), (ValueMean, 0.002)], ..PLAIN },
+    Row { look: Look::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 0.002), (DepthP99, 0.02), (NormalMean, 0.3), (ValueMean, 1e-4)], ..PLAIN },
+    Row { look: Look::DvrBy("adaptive:1e-5"), limits: &[(Kind, 0.001), (DepthMean, 2e-4), (DepthP99, 1e-3), (NormalMean, 0.1), (ValueMean, 1e-5)], ..PLAIN },
+    Row { look: Look::DvrBy("adaptive"), filter: Filter::Nearest, limits: &[(Kind, 0.001), (DepthMean, 0.002), (NormalMean, 0.3), (ValueMean, 1e-4)], ..PLAIN },
+    Row { look: Look::DvrBy("adaptive"), from: From::Inside, reflection: PHONG, gradient: Gradient::FourthOrder, limits: &[(Kind, 0.001), (DepthMean, 0.002), (NormalMean, 0.3), (ValueMean, 1e-4)], ..PLAIN },
+    Row { volume: "u16", look: Look::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 0.002), (NormalMean, 0.3), (ValueMean, 1e-4)], ..PLAIN },
+    Row { volume: "falling", look: Look::DvrBy("adaptive"), clip: WEDGE, limits: &[(Kind, 0.001), (DepthMean, 0.002), (NormalMean, 0.3), (ValueMean, 1e-4)], ..PLAIN },
+    Row { volume: "f32", look: Look::DvrBy("romberg"), from: From::Orthographic, limits: &[(Kind, 0.005), (DepthMean, 0.01), (NormalMean, 0.5), (ValueMean, 1e-3)], ..PLAIN },
     // Spacing 1:1:10, oblique; the calibration of a CT scanner.
     Row { volume: "u16", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
     Row { volume: "u16", look: Look::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
@@ -302,7 +321,11 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
         Look::Lmip => projection(Projection::LocalMaximum {
             threshold: range.at(0.4),
         }),
-        Look::Dvr => {
+        Look::Dvr | Look::DvrBy(_) => {
+            let quadrature = match row.look {
+                Look::DvrBy(rule) => rule.parse().unwrap(),
+                _ => Quadrature::default(),
+            };
             let knot = |at, color, opacity| Knot {
                 value: range.at(at),
                 color: Rgb(color),
@@ -317,6 +340,7 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
             let transfer = TransferFunction::new(knots, unit_mm).unwrap();
             Picture::Emission(Emission {
                 phong,
+                quadrature,
                 termination: 1.0,
                 ..Emission::of(transfer)
             })

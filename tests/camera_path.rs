@@ -8,6 +8,7 @@ fn subject() -> Subject {
     Subject {
         center_world: DVec3::new(10.0, -4.0, 2.5),
         radius_mm: 60.0,
+        spacing_mm: DVec3::ONE,
         range: Range {
             min: 0.0,
             max: 255.0,

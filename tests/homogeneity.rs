@@ -190,6 +190,72 @@ fn samples_are_saved_in_what_is_the_same() {
     assert!(fine < coarse && coarse > 0.6, "{fine} {coarse}");
 }
 
+/// A picture with counters.
+fn counted(
+    renderer: &mut Renderer,
+    volume: &Volume,
+    emission: &Emission,
+    homogeneity: Option<Homogeneity>,
+) -> Frame {
+    let picture = Picture::Emission(Emission {
+        homogeneity,
+        ..emission.clone()
+    });
+    let scene = common::scene(volume, SIZE_PX, picture);
+    renderer.render(&scene, Wanted::ALL).unwrap().frame
+}
+
+/// Where a limit is so fine that no leaf keeps it nothing is averaged, and nothing costs more; where it
+/// takes but a few leaves that does not cost the others their skipping.
+#[test]
+fn averaging_nothing_or_little_takes_no_more_samples() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let rule = HomogeneityRule::Range;
+    for same in [0.0, 9.0] {
+        // Thin tubes in noise; a block of one value, of so many voxels.
+        let volume = volume_of([48, 44, 40], |x, y, z| {
+            let tube = (x - 20.0).hypot(z - 18.0) < 2.5 || (y - 30.0).hypot(x - 35.0) < 1.5;
+            if x < same && y < same && z < same {
+                255
+            } else {
+                (if tube { 180.0 } else { 0.0 } + 40.0 * hash(x, y, z)) as u8
+            }
+        });
+        let octree = common::octree(&volume);
+        let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+        for method in QuadratureMethod::ALL {
+            let emission = Emission {
+                quadrature: Quadrature::of(method),
+                ..Emission::of(transfer(&[(60.0, 0.0), (150.0, 0.2), (240.0, 0.5)], 2.0))
+            };
+            if !emission.quadrature.is_stepped() {
+                continue;
+            }
+            let mut render = |limit| {
+                let homogeneity = limit.map(|limit| Homogeneity { rule, limit });
+                counted(&mut renderer, &volume, &emission, homogeneity)
+            };
+            let (off, fine, coarse) = (render(None), render(Some(1e-6)), render(Some(0.5)));
+            let [off_samples, fine_samples] = [&off, &fine].map(|frame| total(&frame.steps));
+            if same == 0.0 {
+                assert!(fine == off, "{method}");
+            } else {
+                // One value averaged is that value: only sums of equal panels round.
+                assert!(apart(&fine, &off) < 1e-5, "{method}");
+                assert!(fine.color != off.color, "{method}: nothing is averaged");
+                assert!(
+                    fine_samples < off_samples,
+                    "{method}: {fine_samples} {off_samples}"
+                );
+            }
+            // The control: a coarse limit does average, and is seen.
+            assert!(apart(&coarse, &off) > 0.01, "{method}");
+        }
+    }
+}
+
 #[test]
 fn skipping_and_traversal_do_not_change_a_bit_of_it() {
     use angioray::scene::Traverse;
@@ -227,6 +293,8 @@ fn skipping_and_traversal_do_not_change_a_bit_of_it() {
         Traverse::Uniform,
         Traverse::KdRestart,
         Traverse::Hierarchical,
+        Traverse::Revelles,
+        Traverse::Distance,
     ] {
         assert!(
             render(Some(homogeneity), true, traverse) == whole,

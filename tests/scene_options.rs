@@ -11,6 +11,7 @@ use glam::DVec3;
 const SUBJECT: Subject = Subject {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+    spacing_mm: DVec3::ONE,
     range: Range {
         min: -100.0,
         max: 300.0,

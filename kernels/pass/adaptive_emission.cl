@@ -14,13 +14,14 @@
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space), per octree node
-// its CLASS_*, and a bit per cell in which something absorbs. Writes color, premultiplied linear light; with COUNTERS the times the medium was
-// looked at and the nodes tested.
+// its CLASS_*, and a bit per cell in which something absorbs. Writes color, premultiplied linear light;
+// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal: means along the
+// ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0 (they have no
+// part in the bound); with COUNTERS the times the medium was looked at and the nodes tested.
 #include "lib/beam.clh"
 #include "lib/clip.clh"
 #include "lib/gather.clh"
-#include "lib/medium.clh"
-#include "lib/plane.clh"
+#include "lib/means.clh"
 #include "lib/preintegrated.clh"
 
 #ifndef ADAPTIVE_HALVINGS
@@ -42,10 +43,10 @@
 // What rays look at.
 typedef struct {
     Transfer transfer;
-    const global float4 *knot_sums;
+    KnotSums knot_sums;
     VolumeGrid volume;
     EmissionCast cast;
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
     Directions directions;
 #endif
     Shading shading;
@@ -57,7 +58,7 @@ typedef struct {
     Floats3 near, way;  // index space: where the ray enters the cell, and its way through
     Cubic phi;          // along the way
     Floats from, width; // of the piece, shares of the way
-    Floats length_mm;   // of the piece
+    Floats t_mm, length_mm; // of the piece: where it begins, from the ray's entry
 } Piece;
 
 // A point of a piece at u, 0 to 1.
@@ -67,17 +68,14 @@ typedef struct {
     Medium medium;
 } Point;
 
-static inline Medium medium_if(Mask mask, Medium a, Medium b)
-{
-    Medium chosen = {{mask ? a.rgb.x : b.rgb.x, mask ? a.rgb.y : b.rgb.y, mask ? a.rgb.z : b.rgb.z},
-                     mask ? a.absorption : b.absorption};
-    return chosen;
-}
-
 static inline Medium lit_at(VOXELS voxels, const Sight *sight, const Piece *piece, Floats u, Medium medium)
 {
-#if SHADED
+#if HAS_GRADIENT
+#if FILTER_LINEAR
     Floats s = piece->from + piece->width * u;
+#else
+    Floats s = FLOATS(0.5f); // a cell has one gradient; what lies on its walls may be read from the next
+#endif
     Floats3 p = {piece->near.x + s * piece->way.x, piece->near.y + s * piece->way.y, piece->near.z + s * piece->way.z};
     p = clamp_to_domain(sight->volume, p);
     return lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);
@@ -92,14 +90,15 @@ static inline Point point_at(VOXELS voxels, const Sight *sight, const Piece *pie
     point.value = cubic_at(piece->phi, piece->from + piece->width * u);
     point.after = knots_up_to(sight->transfer, point.value);
     Seen seen = transfer_between(sight->transfer, point.after, point.value);
-    Medium medium = {seen.rgb, absorption_per_mm(sight->cast, seen.opacity)};
+    Medium medium = {light_of(seen.rgb, point.value), absorption_per_mm(sight->cast, seen.opacity)};
+    place_light(&medium.light, piece->t_mm + u * piece->length_mm);
     point.medium = lit_at(voxels, sight, piece, u, medium);
     return point;
 }
 
 // A panel, and the light that it gives by itself.
 typedef struct {
-    Floats3 light;
+    Light light;
     Floats depth, opacity;
 } Lit;
 
@@ -112,16 +111,15 @@ static inline Lit panel_of(VOXELS voxels, const Sight *sight, const Piece *piece
     Mask meets_knots = which & near->after != far->after;
     if (ANY(meets_knots)) {
         Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, near->value, far->value);
-        Panel linear = panel_midpoint(lit_at(voxels, sight, piece, u + 0.5f * width, mean), length_mm);
-        panel.rgb.x = meets_knots ? linear.rgb.x : panel.rgb.x;
-        panel.rgb.y = meets_knots ? linear.rgb.y : panel.rgb.y;
-        panel.rgb.z = meets_knots ? linear.rgb.z : panel.rgb.z;
+        Panel linear = panel_linear(lit_at(voxels, sight, piece, u + 0.5f * width, mean), near->value, far->value,
+                                    piece->t_mm + u * piece->length_mm, length_mm);
+        panel.light = light_if(meets_knots, linear.light, panel.light);
         panel.depth = meets_knots ? linear.depth : panel.depth;
     }
     Lit lit;
     lit.depth = panel.depth;
     lit.opacity = kept_back(panel.depth);
-    lit.light = weighted(panel.rgb, lit.opacity);
+    lit.light = weighted(panel.light, lit.opacity);
     return lit;
 }
 
@@ -138,9 +136,9 @@ static inline Lit lit_behind(const Lit *one, const Lit *two)
 // How far apart two results for one panel are: in its light, and in what it lets through.
 static inline Floats apart(const Lit *a, const Lit *b)
 {
-    Floats x = fabs(a->light.x - b->light.x);
-    Floats y = fabs(a->light.y - b->light.y);
-    Floats z = fabs(a->light.z - b->light.z);
+    Floats x = fabs(a->light.rgb.x - b->light.rgb.x);
+    Floats y = fabs(a->light.rgb.y - b->light.rgb.y);
+    Floats z = fabs(a->light.rgb.z - b->light.rgb.z);
     return most_of(x, most_of(y, z)) + fabs(a->opacity - b->opacity);
 }
 
@@ -229,6 +227,7 @@ static inline void gather_cells(VOXELS voxels, const Sight *sight, Gathered *gat
     for (uint n = 1u; n < 4u; n++) {
         piece.from = ends[n - 1u];
         piece.width = ends[n] - ends[n - 1u];
+        piece.t_mm = enters.high + piece.from * length_mm;
         piece.length_mm = piece.width * length_mm;
         gather_pieces(voxels, sight, gathered, &piece, share_per_mm, which & piece.width > 0.0f, samples);
     }
@@ -312,12 +311,21 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
 
 kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                               const global float *knot_values, const global float4 *knot_colors, const global float4 *knot_sums,
+#if LAYERS
+                              const global float *knot_value_sums,
+#endif
                               const global float4 *clip_planes, uint clip_count,
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
                               const global short *directions, uint4 direction_grid,
 #endif
                               VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
                               global float4 *color
+#if LAYERS
+                              , global float *depth, global float *value
+#endif
+#if NORMALS
+                              , global float4 *normal
+#endif
 #if COUNTERS
                               , global uint *steps, global uint *nodes
 #endif
@@ -336,10 +344,13 @@ kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, con
         sight.transfer.values = knot_values;
         sight.transfer.colors = knot_colors;
         sight.transfer.knots = cast.knots;
-        sight.knot_sums = knot_sums;
+        sight.knot_sums.sums = knot_sums;
+#if LAYERS
+        sight.knot_sums.value_sums = knot_value_sums;
+#endif
         sight.volume = volume;
         sight.cast = cast;
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
         Directions precomputed = {directions, direction_grid};
         sight.directions = precomputed;
 #endif
@@ -350,8 +361,14 @@ kernel void adaptive_emission(VOXELS voxels, const global uchar *node_class, con
         gather_along(voxels, &sight, &gathered, node_class, levels, cells, ray, interval, meets, &sample_count, &node_count);
     }
 
-    Floats4 seen = {gathered.rgb.x, gathered.rgb.y, gathered.rgb.z, kept_back(gathered.depth)};
+    Floats4 seen = {gathered.light.rgb.x, gathered.light.rgb.y, gathered.light.rgb.z, kept_back(gathered.depth)};
     put_fours(color, pixels, seen);
+#if LAYERS
+    put_depth_and_value(depth, value, &gathered.light, seen.w >= cast.layers_from, ray.base_mm + interval.enter, pixels);
+#endif
+#if NORMALS
+    put_normal(normal, &gathered.light, seen.w >= cast.layers_from, ray, pixels);
+#endif
 #if COUNTERS
     SCATTER(pixels.inside, steps, pixels.index, sample_count);
     SCATTER(pixels.inside, nodes, pixels.index, node_count);

@@ -4,31 +4,37 @@
 // last full step and the exit; QUADRATURE says at which nodes it is looked at and what they weigh
 // (lib/quadrature.clh, lib/preintegrated.clh). Panels tile the ray, so that opacity depends on path
 // length alone. A panel is left out where it lies in transparent nodes wholly: it would add exactly
-// nothing. With HOMOGENEOUS, the samples of a leaf of that class are one panel of the leaf's average
-// value. A ray ends once its transmission falls below least_transmission: the colour lost is at most
+// nothing. With HOMOGENEOUS, the samples of a leaf of that class are one panel of the value that stands for
+// the leaf. A ray ends once its transmission falls below least_transmission: the colour lost is at most
 // least_transmission times the brightest colour.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
-// node, its CLASS_* and average. Writes color, premultiplied linear light; with COUNTERS the samples
-// taken and the nodes tested.
+// node, its CLASS_*; with HOMOGENEOUS what stands for each leaf. Writes color, premultiplied linear light;
+// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal: means along the
+// ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0; with COUNTERS
+// the samples taken and the nodes tested.
 #include "lib/clip.clh"
 #include "lib/gather.clh"
 #include "lib/medium.clh"
 #include "lib/plane.clh"
 #include "lib/preintegrated.clh"
+#include "lib/means.clh"
 #include "lib/stretches.clh"
+
+// With the nearest filter no value lies between two samples' own: there is nothing to integrate.
+#define INTEGRATES (QUADRATURE == QUADRATURE_PREINTEGRATED && FILTER_LINEAR)
 
 // What rays look at.
 typedef struct {
     Transfer transfer;
-#if QUADRATURE == QUADRATURE_PREINTEGRATED
-    const global float4 *knot_sums;
+#if INTEGRATES
+    KnotSums knot_sums;
 #endif
     VolumeGrid volume;
     Lattice lattice;
     EmissionCast cast;
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
     Directions directions;
 #endif
     Shading shading;
@@ -40,21 +46,28 @@ static inline Floats phi_at(VOXELS voxels, const Sight *sight, Floats t)
     return field_at(voxels, sight->volume, lattice_point(sight->volume, &sight->lattice, t));
 }
 
-#if QUADRATURE != QUADRATURE_PREINTEGRATED
+#if HAS_GRADIENT
+static inline Medium lit_at(VOXELS voxels, const Sight *sight, Floats t, Medium medium)
+{
+    Floats3 p = lattice_point(sight->volume, &sight->lattice, t);
+    return lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);
+}
+#else
+#define lit_at(voxels, sight, t, medium) (medium)
+#endif
+
+#if !INTEGRATES
 static inline Medium medium_at(VOXELS voxels, const Sight *sight, Floats t)
 {
     Medium medium = medium_of(sight->transfer, sight->cast, phi_at(voxels, sight, t));
-#if SHADED
-    Floats3 p = lattice_point(sight->volume, &sight->lattice, t);
-    medium = lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, p, medium);
-#endif
-    return medium;
+    place_light(&medium.light, t);
+    return lit_at(voxels, sight, t, medium);
 }
 #endif
 
 // The panel between two samples of the lattice. What is known of the first is `near`; what is known of the
 // second takes its place. NODE_SAMPLES: how many samples that takes.
-#if QUADRATURE == QUADRATURE_PREINTEGRATED
+#if INTEGRATES
 typedef Floats Node; // Phi
 #define NODE_SAMPLES 1
 #define NODE_AT phi_at
@@ -65,14 +78,11 @@ static inline Node node_if(Mask mask, Node a, Node b) { return mask ? a : b; }
 static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
     Floats length_mm = t_far - t_near;
+    Node first = *near;
     Node last = phi_at(voxels, sight, t_far);
-    Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, *near, last);
     *near = last;
-#if SHADED
-    Floats3 middle = lattice_point(sight->volume, &sight->lattice, t_near + 0.5f * length_mm);
-    mean = lit_medium(GRADIENT_FROM(voxels, sight->directions), sight->volume, sight->shading, sight->toward_eye, middle, mean);
-#endif
-    return panel_midpoint(mean, length_mm);
+    Medium mean = mean_medium(sight->transfer, sight->knot_sums, sight->cast, first, last);
+    return panel_linear(lit_at(voxels, sight, t_near + 0.5f * length_mm, mean), first, last, t_near, length_mm);
 }
 #elif QUADRATURE == QUADRATURE_RIEMANN
 typedef Floats Node; // samples are not shared
@@ -81,7 +91,7 @@ typedef Floats Node; // samples are not shared
 
 static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
-    return panel_riemann(medium_at(voxels, sight, t_near), t_far - t_near);
+    return panel_even(medium_at(voxels, sight, t_near), t_near, t_far - t_near);
 }
 #elif QUADRATURE == QUADRATURE_MIDPOINT
 typedef Floats Node; // samples are not shared
@@ -91,22 +101,18 @@ typedef Floats Node; // samples are not shared
 static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, Floats t_far, Node *near)
 {
     Floats length_mm = t_far - t_near;
-    return panel_midpoint(medium_at(voxels, sight, t_near + 0.5f * length_mm), length_mm);
+    return panel_even(medium_at(voxels, sight, t_near + 0.5f * length_mm), t_near, length_mm);
 }
 #else
 typedef Medium Node;
 #define NODE_AT medium_at
 #define NODE_UNKNOWN clear_medium()
-
-static inline Node node_if(Mask mask, Node a, Node b)
-{
-    Node chosen = {{mask ? a.rgb.x : b.rgb.x, mask ? a.rgb.y : b.rgb.y, mask ? a.rgb.z : b.rgb.z},
-                   mask ? a.absorption : b.absorption};
-    return chosen;
-}
+#define node_if medium_if
 
 #if QUADRATURE == QUADRATURE_ROMBERG
 #define NODE_SAMPLES 4 // nodes lie evenly
+#elif QUADRATURE == QUADRATURE_PREINTEGRATED
+#define NODE_SAMPLES 1 // either value for half the panel
 #else
 #define NODE_SAMPLES 2
 #endif
@@ -123,6 +129,8 @@ static inline Panel panel_at(VOXELS voxels, const Sight *sight, Floats t_near, F
     return panel_romberg(nodes[0], nodes[1], nodes[2], nodes[3], nodes[4], length_mm);
 #elif QUADRATURE == QUADRATURE_RK4
     return panel_rk4(nodes[0], nodes[1], nodes[2], length_mm);
+#elif QUADRATURE == QUADRATURE_PREINTEGRATED
+    return panel_halves(nodes[0], nodes[1], length_mm);
 #else
     return panel_simpson(nodes[0], nodes[1], nodes[2], length_mm);
 #endif
@@ -197,8 +205,10 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
                 if (ANY(same)) {
                     Walk leaves = walk_start(volume, TRAVERSE_UNIFORM);
                     Floats average = GATHER(Floats, node_average, AS_UINTS(node_index(levels, spans.cell, &leaves)));
-                    Medium all = medium_of(sight->transfer, sight->cast, average);
-                    gather(gathered, panel_midpoint(all, lattice_t(lattice, spans.end - 1) - lattice_t(lattice, begin)), same);
+                    Floats t_near = lattice_t(lattice, begin);
+                    Floats length_mm = lattice_t(lattice, spans.end - 1) - t_near;
+                    Medium all = lit_at(voxels, sight, t_near + 0.5f * length_mm, medium_of(sight->transfer, sight->cast, average));
+                    gather(gathered, panel_even(all, t_near, length_mm), same);
                     alive = alive & gathered->transmission >= sight->cast.least_transmission;
                     arrives = arrives & alive;
                 }
@@ -216,6 +226,12 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
             }
         }
         Mask looking = alive & stretch.k <= stretch.last;
+#if HOMOGENEOUS && FILTER_LINEAR
+        if (traverse == TRAVERSE_DISTANCE)
+            looking = pass_clear(&stretch, volume, lattice, cells, looking);
+        if (ANY(alive) && !ANY(looking))
+            continue;
+#endif
         if (!ANY(looking))
             return;
         do {
@@ -227,18 +243,27 @@ static inline void gather_along(VOXELS voxels, const Sight *sight, Gathered *gat
 
 kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const global uint4 *levels, const global ulong *cells,
                           const global float *knot_values, const global float4 *knot_colors,
-#if QUADRATURE == QUADRATURE_PREINTEGRATED
+#if INTEGRATES
                           const global float4 *knot_sums,
+#if LAYERS
+                          const global float *knot_value_sums,
+#endif
 #endif
 #if HOMOGENEOUS
                           const global float *node_average,
 #endif
                           const global float4 *clip_planes, uint clip_count,
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
                           const global short *directions, uint4 direction_grid,
 #endif
                           VolumeGrid volume, RayGrid rays, EmissionCast cast, Shading shading,
                           global float4 *color
+#if LAYERS
+                          , global float *depth, global float *value
+#endif
+#if NORMALS
+                          , global float4 *normal
+#endif
 #if COUNTERS
                           , global uint *steps, global uint *nodes
 #endif
@@ -257,13 +282,16 @@ kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const g
         sight.transfer.values = knot_values;
         sight.transfer.colors = knot_colors;
         sight.transfer.knots = cast.knots;
-#if QUADRATURE == QUADRATURE_PREINTEGRATED
-        sight.knot_sums = knot_sums;
+#if INTEGRATES
+        sight.knot_sums.sums = knot_sums;
+#if LAYERS
+        sight.knot_sums.value_sums = knot_value_sums;
+#endif
 #endif
         sight.volume = volume;
         sight.lattice = ray_lattice(volume, ray, interval, cast.step_mm);
         sight.cast = cast;
-#if SHADED && GRADIENT == GRADIENT_PRECOMPUTED
+#if HAS_GRADIENT && GRADIENT == GRADIENT_PRECOMPUTED
         Directions precomputed = {directions, direction_grid};
         sight.directions = precomputed;
 #endif
@@ -278,8 +306,14 @@ kernel void cast_emission(VOXELS voxels, const global uchar *node_class, const g
 #endif
     }
 
-    Floats4 seen = {gathered.rgb.x, gathered.rgb.y, gathered.rgb.z, kept_back(gathered.depth)};
+    Floats4 seen = {gathered.light.rgb.x, gathered.light.rgb.y, gathered.light.rgb.z, kept_back(gathered.depth)};
     put_fours(color, pixels, seen);
+#if LAYERS
+    put_depth_and_value(depth, value, &gathered.light, seen.w >= cast.layers_from, ray.base_mm + interval.enter, pixels);
+#endif
+#if NORMALS
+    put_normal(normal, &gathered.light, seen.w >= cast.layers_from, ray, pixels);
+#endif
 #if COUNTERS
     SCATTER(pixels.inside, steps, pixels.index, sample_count);
     SCATTER(pixels.inside, nodes, pixels.index, node_count);

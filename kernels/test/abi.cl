@@ -81,8 +81,8 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, color_spread);
         layout[n++] = OFFSET(EmissionCast, absorbs_from);
         layout[n++] = OFFSET(EmissionCast, absorbs_to);
-        layout[n++] = OFFSET(EmissionCast, pad_0);
-        layout[n++] = OFFSET(EmissionCast, pad_1);
+        layout[n++] = OFFSET(EmissionCast, layers_from);
+        layout[n++] = OFFSET(EmissionCast, pad);
     }
     {
         Shading value;

@@ -59,6 +59,7 @@ impl Specimen {
         let subject = Subject {
             center_world,
             radius_mm,
+            spacing_mm: self.volume.geometry().spacing_mm(),
             range: self.volume.range(),
             robust_range: self.volume.range(),
             otsu: self.iso,

@@ -105,6 +105,7 @@ impl Source {
         let subject = Subject {
             center_world,
             radius_mm,
+            spacing_mm: volume.geometry().spacing_mm(),
             range: volume.range(),
             robust_range: histogram.range,
             otsu: histogram.otsu(),

@@ -21,9 +21,10 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, with commas between, or all that the mode has. certificate goes with iso alone:
-        /// 0 proven to miss, 1 proven to hit, 2 undecided (with fixed steps 2 everywhere, since they
-        /// prove nothing)
+        /// certificate, with commas between, or all that the mode has. In dvr depth, normal and value are
+        /// means along the ray, weighted as its light is, where the opacity is 0.01 at least. certificate
+        /// goes with iso alone: 0 proven to miss, 1 proven to hit, 2 undecided (with fixed steps 2
+        /// everywhere, since they prove nothing)
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 

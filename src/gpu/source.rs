@@ -29,6 +29,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/gradient.clh",
     "lib/lanes.clh",
     "lib/lattice.clh",
+    "lib/means.clh",
     "lib/medium.clh",
     "lib/octree.clh",
     "lib/pair.clh",

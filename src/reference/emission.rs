@@ -2,9 +2,10 @@
 //! integrand is not smooth: cell faces, knots of the transfer function, and, when shaded, where
 //! the surface turns away from the viewer or the light.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use smallvec::{SmallVec, smallvec};
 
+use crate::extent::Range;
 use crate::scene::Gradient;
 use crate::volume::Voxel;
 
@@ -46,13 +47,34 @@ pub struct Emitted {
     pub walked: u32,
 }
 
+/// Means along a ray, each point weighted as its light is that reaches the eye: ∫ x κT dt / ∫ κT dt.
+#[derive(Debug, Clone, Copy)]
+pub struct Means {
+    /// Of the distance from the interval's start.
+    pub at_mm: f64,
+    /// Of Φ; physical.
+    pub value: f64,
+    /// Of the unit normals, world space, itself not of unit length; 0 where none were asked for.
+    pub normal_world: DVec3,
+}
+
 /// How the medium's points are lit.
 #[derive(Debug, Clone, Copy)]
 pub struct Shading {
     pub lighting: Lighting,
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
-    pub gradient_world_from_index: glam::DMat3,
+    pub gradient_world_from_index: DMat3,
+}
+
+/// Which way normals are found and turned to the world.
+#[derive(Debug, Clone, Copy)]
+pub struct Normals {
+    pub gradient: Gradient,
+    /// The inverse transpose of world_from_index's linear part.
+    pub gradient_world_from_index: DMat3,
+    /// The normal where Φ has no gradient.
+    pub toward_eye: DVec3,
 }
 
 /// `∫ c κ T dt` and T over the interval, within 1e-6 per channel (for colours up to 1).
@@ -62,74 +84,83 @@ pub fn integrate<T: Voxel>(
     medium: &Medium,
     shading: Option<&Shading>,
 ) -> Emitted {
-    let mut ray = Ray {
-        medium,
-        tolerance_per_mm: TOLERANCE / interval.length_mm,
-        brightest: shading.map_or(1.0, |s| s.lighting.brightest().max(1.0)),
-        color: [0.0; 3],
-        transmittance: 1.0,
-    };
-    let mut walked = 0;
-    for segment in Walk::new(field.lattice, interval) {
-        walked += 1;
-        let corners = field.corners(segment.cell);
-        let (low, high) = bounds(&corners);
-        if medium.is_clear(low, high) || segment.length_mm() <= 0.0 {
-            continue;
-        }
-        let stretch = Stretch {
-            phi: Field::<T>::along(&corners, &segment),
-            noise: NOISE_SHARE * low.abs().max(high.abs()),
-            length_mm: segment.length_mm(),
-            lit: shading.map(|shading| Lit::new(field, &segment, shading)),
-        };
-        let breaks = stretch.breaks(medium);
-        for ends in breaks.windows(2) {
-            let (from, to) = (ends[0], ends[1]);
-            let ramp = medium.ramp(stretch.phi.at(0.5 * (from + to)));
-            if from < to && !ramp.is_clear() {
-                ray.add(&stretch, ramp, from, to);
-            }
-        }
-        if ray.transmittance < DARK {
-            break;
-        }
-    }
+    let brightest = shading.map_or(1.0, |s| s.lighting.brightest().max(1.0));
+    let mut ray = Ray::new(medium, interval, brightest);
+    let walked = ray.along(field, interval, |segment| Tint {
+        lit: shading.map(|shading| Lit::new(field, segment, shading)),
+    });
     Emitted {
-        color: ray.color,
+        color: ray.light,
         transmittance: ray.transmittance,
         walked,
     }
 }
 
-/// The light on a segment.
-struct Lit {
-    lighting: Lighting,
-    /// ∇Φ in world space, each component a cubic.
-    gradient_world: [Cubic; 3],
+/// The means of an interval in which something absorbs, the normal where asked for. Their integrals are as
+/// exact as [`integrate`]'s, in shares of the interval's length and of `range`, the field's values.
+pub fn means<T: Voxel>(
+    field: &Field<T>,
+    interval: &Interval,
+    medium: &Medium,
+    range: Range,
+    normals: Option<&Normals>,
+) -> Means {
+    let mut ray = Ray::new(medium, interval, 1.0);
+    ray.along(field, interval, |segment| Place {
+        from: segment.from_mm / interval.length_mm,
+        to: segment.to_mm / interval.length_mm,
+        range,
+        normals: normals.map(|normals| Turned::new(field, segment, normals)),
+    });
+    let opacity = 1.0 - ray.transmittance;
+    let [at, value, x, y, z] = ray.light.map(|sum| sum / opacity);
+    Means {
+        at_mm: at * interval.length_mm,
+        value: range.min + value * range.width(),
+        normal_world: DVec3::new(x, y, z),
+    }
 }
 
-impl Lit {
-    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading) -> Self {
-        let gradient = field.gradient(segment, shading.gradient);
-        let rows = shading.gradient_world_from_index.transpose();
+/// What is summed over a segment's points: N numbers each, weighted by κT.
+trait Points<const N: usize> {
+    /// At s of the segment, where Φ is `value` and the medium has a colour.
+    fn at(&self, s: f64, value: f64, color: [f64; 3]) -> [f64; N];
+
+    /// Where these numbers are not smooth.
+    fn push_breaks(&self, _breaks: &mut Breaks) {}
+
+    /// Whether they surely change little on a piece: a swing might lie between all nodes.
+    fn is_steady(&self, _from: f64, _to: f64) -> bool {
+        true
+    }
+}
+
+type Breaks = SmallVec<[f64; 16]>;
+
+/// ∇Φ along a segment in world space, each component a cubic.
+struct WorldGradient([Cubic; 3]);
+
+impl WorldGradient {
+    fn new<T: Voxel>(
+        field: &Field<T>,
+        segment: &Segment,
+        gradient: Gradient,
+        gradient_world_from_index: DMat3,
+    ) -> Self {
+        let gradient = field.gradient(segment, gradient);
+        let rows = gradient_world_from_index.transpose();
         let component = |row: DVec3| Cubic::combine(&gradient, row.to_array());
-        Self {
-            lighting: shading.lighting,
-            gradient_world: [rows.x_axis, rows.y_axis, rows.z_axis].map(component),
-        }
+        Self([rows.x_axis, rows.y_axis, rows.z_axis].map(component))
     }
 
-    fn reflect(&self, color: [f64; 3], s: f64) -> [f64; 3] {
-        let gradient = DVec3::from_array(self.gradient_world.map(|c| c.at(s)));
-        let normal = normal_from_gradient(gradient, self.lighting.to_viewer);
-        self.lighting.reflect(color, normal)
+    fn normal(&self, s: f64, toward_eye: DVec3) -> DVec3 {
+        normal_from_gradient(DVec3::from_array(self.0.map(|c| c.at(s))), toward_eye)
     }
 
     /// Whether the normal surely turns little on a piece: a swing where the gradient almost
     /// vanishes might lie between all nodes. The gradient lies in the hull of its Bézier points.
     fn is_steady(&self, from: f64, to: f64) -> bool {
-        let [x, y, z] = self.gradient_world.map(|c| c.hull(from, to));
+        let [x, y, z] = self.0.map(|c| c.hull(from, to));
         let points: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
         let middle: DVec3 = points.iter().sum();
         points
@@ -138,97 +169,238 @@ impl Lit {
     }
 }
 
+/// The light on a segment.
+struct Lit {
+    lighting: Lighting,
+    gradient: WorldGradient,
+}
+
+impl Lit {
+    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading) -> Self {
+        let to_world = shading.gradient_world_from_index;
+        Self {
+            lighting: shading.lighting,
+            gradient: WorldGradient::new(field, segment, shading.gradient, to_world),
+        }
+    }
+}
+
+/// Colours, under a light where there is one.
+struct Tint {
+    lit: Option<Lit>,
+}
+
+impl Points<3> for Tint {
+    fn at(&self, s: f64, _value: f64, color: [f64; 3]) -> [f64; 3] {
+        match &self.lit {
+            Some(lit) => {
+                let normal = lit.gradient.normal(s, lit.lighting.to_viewer);
+                lit.lighting.reflect(color, normal)
+            }
+            None => color,
+        }
+    }
+
+    fn push_breaks(&self, breaks: &mut Breaks) {
+        if let Some(lit) = &self.lit {
+            for toward in [lit.lighting.to_viewer, lit.lighting.to_light] {
+                Cubic::combine(&lit.gradient.0, toward.to_array()).push_crossings(0.0, breaks);
+            }
+        }
+    }
+
+    fn is_steady(&self, from: f64, to: f64) -> bool {
+        let lit = self.lit.as_ref();
+        lit.is_none_or(|lit| lit.gradient.is_steady(from, to))
+    }
+}
+
+/// The normals of a segment.
+struct Turned {
+    gradient: WorldGradient,
+    toward_eye: DVec3,
+}
+
+impl Turned {
+    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, normals: &Normals) -> Self {
+        let to_world = normals.gradient_world_from_index;
+        Self {
+            gradient: WorldGradient::new(field, segment, normals.gradient, to_world),
+            toward_eye: normals.toward_eye,
+        }
+    }
+}
+
+/// Where points are, as a share of the interval; Φ, as a share of its range; and their normals.
+struct Place {
+    from: f64,
+    to: f64,
+    range: Range,
+    normals: Option<Turned>,
+}
+
+impl Points<5> for Place {
+    fn at(&self, s: f64, value: f64, _color: [f64; 3]) -> [f64; 5] {
+        let normal = self.normals.as_ref().map_or(DVec3::ZERO, |turned| {
+            turned.gradient.normal(s, turned.toward_eye)
+        });
+        let share = if self.range.width() > 0.0 {
+            (value - self.range.min) / self.range.width()
+        } else {
+            0.0
+        };
+        let at = self.from + (self.to - self.from) * s;
+        [at, share, normal.x, normal.y, normal.z]
+    }
+
+    fn is_steady(&self, from: f64, to: f64) -> bool {
+        let normals = self.normals.as_ref();
+        normals.is_none_or(|turned| turned.gradient.is_steady(from, to))
+    }
+}
+
 /// The integrand on one segment.
-struct Stretch {
+struct Stretch<P> {
     phi: Cubic,
     /// Rounding error of Φ.
     noise: f64,
     length_mm: f64,
-    lit: Option<Lit>,
+    points: P,
 }
 
-impl Stretch {
-    /// Colour and absorption per mm at a point.
-    fn emits(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; 3], f64) {
-        let (color, absorption) = medium.at(ramp, self.phi.at(s));
-        match &self.lit {
-            Some(lit) => (lit.reflect(color, s), absorption),
-            None => (color, absorption),
-        }
+impl<P> Stretch<P> {
+    /// What is summed, and absorption per mm, at a point.
+    fn emits<const N: usize>(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; N], f64)
+    where
+        P: Points<N>,
+    {
+        let value = self.phi.at(s);
+        let (color, absorption) = medium.at(ramp, value);
+        (self.points.at(s, value, color), absorption)
     }
 
     /// Where the integrand is not smooth, with 0 and 1, ascending.
-    fn breaks(&self, medium: &Medium) -> SmallVec<[f64; 16]> {
-        let mut breaks: SmallVec<[f64; 16]> = smallvec![0.0, 1.0];
+    fn breaks<const N: usize>(&self, medium: &Medium) -> Breaks
+    where
+        P: Points<N>,
+    {
+        let mut breaks: Breaks = smallvec![0.0, 1.0];
         for ends in self.phi.monotone_ends().windows(2) {
             let (a, b) = (self.phi.at(ends[0]), self.phi.at(ends[1]));
             for &level in medium.levels_between(a.min(b), a.max(b)) {
                 breaks.push(self.phi.crossing(level, ends[0], ends[1]));
             }
         }
-        if let Some(lit) = &self.lit {
-            for toward in [lit.lighting.to_viewer, lit.lighting.to_light] {
-                Cubic::combine(&lit.gradient_world, toward.to_array())
-                    .push_crossings(0.0, &mut breaks);
-            }
-        }
+        self.points.push_breaks(&mut breaks);
         breaks.sort_by(f64::total_cmp);
         breaks
     }
 }
 
-/// Light and optical depth of a piece on its own.
+/// Light, or what else is summed, and optical depth of a piece on its own.
 #[derive(Clone, Copy)]
-struct Panel {
-    color: [f64; 3],
+struct Panel<const N: usize> {
+    light: [f64; N],
     depth: f64,
 }
 
-impl Panel {
+impl<const N: usize> Panel<N> {
     fn then(self, next: Self) -> Self {
         let through = (-self.depth).exp();
         Self {
-            color: std::array::from_fn(|c| self.color[c] + through * next.color[c]),
+            light: std::array::from_fn(|c| self.light[c] + through * next.light[c]),
             depth: self.depth + next.depth,
         }
     }
 }
 
-/// The light gathered so far.
-struct Ray<'a> {
+/// What is gathered so far.
+struct Ray<'a, const N: usize> {
     medium: &'a Medium,
     tolerance_per_mm: f64,
     brightest: f64,
-    color: [f64; 3],
+    light: [f64; N],
     transmittance: f64,
 }
 
-impl Ray<'_> {
-    fn add(&mut self, stretch: &Stretch, ramp: &Ramp, from: f64, to: f64) {
+impl<'a, const N: usize> Ray<'a, N> {
+    /// At the start of an interval. `brightest`: the most that a point's numbers are.
+    fn new(medium: &'a Medium, interval: &Interval, brightest: f64) -> Self {
+        Self {
+            medium,
+            tolerance_per_mm: TOLERANCE / interval.length_mm,
+            brightest,
+            light: [0.0; N],
+            transmittance: 1.0,
+        }
+    }
+
+    /// Gathers the whole interval; the boxes walked.
+    fn along<T: Voxel, P: Points<N>>(
+        &mut self,
+        field: &Field<T>,
+        interval: &Interval,
+        points: impl Fn(&Segment) -> P,
+    ) -> u32 {
+        let mut walked = 0;
+        for segment in Walk::new(field.lattice, interval) {
+            walked += 1;
+            let corners = field.corners(segment.cell);
+            let (low, high) = bounds(&corners);
+            if self.medium.is_clear(low, high) || segment.length_mm() <= 0.0 {
+                continue;
+            }
+            let stretch = Stretch {
+                phi: Field::<T>::along(&corners, &segment),
+                noise: NOISE_SHARE * low.abs().max(high.abs()),
+                length_mm: segment.length_mm(),
+                points: points(&segment),
+            };
+            for ends in stretch.breaks(self.medium).windows(2) {
+                let (from, to) = (ends[0], ends[1]);
+                let ramp = self.medium.ramp(stretch.phi.at(0.5 * (from + to)));
+                if from < to && !ramp.is_clear() {
+                    self.add(&stretch, ramp, from, to);
+                }
+            }
+            if self.transmittance < DARK {
+                break;
+            }
+        }
+        walked
+    }
+
+    fn add<P: Points<N>>(&mut self, stretch: &Stretch<P>, ramp: &Ramp, from: f64, to: f64) {
         let whole = self.panel(stretch, ramp, from, to);
         self.refine(stretch, ramp, (from, to), whole);
     }
 
     /// One step of the collocation rule.
-    fn panel(&self, stretch: &Stretch, ramp: &Ramp, from: f64, to: f64) -> Panel {
+    fn panel<P: Points<N>>(
+        &self,
+        stretch: &Stretch<P>,
+        ramp: &Ramp,
+        from: f64,
+        to: f64,
+    ) -> Panel<N> {
         let rule = &*GAUSS;
         let length_mm = stretch.length_mm * (to - from);
-        let mut color = [[0.0; 3]; NODES];
+        let mut light = [[0.0; N]; NODES];
         let mut depth = [0.0; NODES];
         for i in 0..NODES {
             let s = from + (to - from) * rule.nodes[i];
             let (emitted, absorption) = stretch.emits(self.medium, ramp, s);
-            color[i] = emitted;
+            light[i] = emitted;
             depth[i] = absorption * length_mm;
         }
         let dot = |weights: &[f64; NODES]| (0..NODES).map(|j| weights[j] * depth[j]).sum::<f64>();
         let mut panel = Panel {
-            color: [0.0; 3],
+            light: [0.0; N],
             depth: dot(&rule.weights),
         };
         for i in 0..NODES {
             let seen = rule.weights[i] * depth[i] * (-dot(&rule.to_node[i])).exp();
-            for (sum, c) in panel.color.iter_mut().zip(color[i]) {
+            for (sum, c) in panel.light.iter_mut().zip(light[i]) {
                 *sum += seen * c;
             }
         }
@@ -237,7 +409,13 @@ impl Ray<'_> {
 
     /// Adds a piece front to back: as two halves if they agree with the whole, else half by half;
     /// a piece too short to halve, as one of constant colour.
-    fn refine(&mut self, stretch: &Stretch, ramp: &Ramp, (from, to): (f64, f64), whole: Panel) {
+    fn refine<P: Points<N>>(
+        &mut self,
+        stretch: &Stretch<P>,
+        ramp: &Ramp,
+        (from, to): (f64, f64),
+        whole: Panel<N>,
+    ) {
         if self.transmittance < DARK {
             return;
         }
@@ -245,35 +423,32 @@ impl Ray<'_> {
         let first = self.panel(stretch, ramp, from, middle);
         let second = self.panel(stretch, ramp, middle, to);
         let halves = first.then(second);
-        let off = (0..3).fold(0.0_f64, |off, c| {
-            off.max((whole.color[c] - halves.color[c]).abs())
+        let off = (0..N).fold(0.0_f64, |off, c| {
+            off.max((whole.light[c] - halves.light[c]).abs())
         });
-        let leaves = |panel: Panel| (-panel.depth).exp();
+        let leaves = |panel: Panel<N>| (-panel.depth).exp();
         let estimate = off + self.brightest * (leaves(whole) - leaves(halves)).abs();
         let length_mm = stretch.length_mm * (to - from);
         let allowed = (self.tolerance_per_mm * length_mm).max(FLOOR);
         let noise = self.medium.noise_per_mm(ramp, stretch.noise) * length_mm;
         let left = leaves(halves);
         let agree = self.transmittance * estimate <= allowed || estimate <= noise;
-        let is_steady = || match &stretch.lit {
-            Some(lit) => lit.is_steady(from, to),
-            None => true,
-        };
+        let is_steady = || stretch.points.is_steady(from, to);
         let is_faint = self.transmittance * self.brightest * (1.0 - left) <= FLOOR;
         if agree && halves.depth <= MAX_DEPTH_OF_PIECE && (is_faint || is_steady()) {
-            self.gather(halves.color, left);
+            self.gather(halves.light, left);
         } else if to - from > SHORTEST {
             self.refine(stretch, ramp, (from, middle), first);
             self.refine(stretch, ramp, (middle, to), second);
         } else {
-            let (color, _) = stretch.emits(self.medium, ramp, middle);
-            self.gather(color.map(|c| c * (1.0 - left)), left);
+            let (light, _) = stretch.emits(self.medium, ramp, middle);
+            self.gather(light.map(|c| c * (1.0 - left)), left);
         }
     }
 
     /// Adds the light of the next piece, which lets `left` of the light behind it through.
-    fn gather(&mut self, color: [f64; 3], left: f64) {
-        for (sum, c) in self.color.iter_mut().zip(color) {
+    fn gather(&mut self, light: [f64; N], left: f64) {
+        for (sum, c) in self.light.iter_mut().zip(light) {
             *sum += self.transmittance * c;
         }
         self.transmittance *= left;

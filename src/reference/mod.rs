@@ -47,7 +47,7 @@ pub fn render(
     wanted: Wanted,
     progress: &dyn Progress,
 ) -> Result<Frame> {
-    let tracer = Tracer::new(volume, scene)?;
+    let tracer = Tracer::new(volume, scene)?.wanting(wanted);
     let (size, width) = (scene.size, scene.size.width());
     let mut frame = Frame::blank(size, wanted)?;
     progress.begin("reference", u64::from(size.height()));
@@ -80,7 +80,7 @@ pub fn render_pixels(
 ) -> Result<Frame> {
     /// Between two reports.
     const AT_A_TIME: usize = 256;
-    let tracer = Tracer::new(volume, scene)?;
+    let tracer = Tracer::new(volume, scene)?.wanting(wanted);
     let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;
     progress.begin("reference", pixels.len() as u64);
     for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {

@@ -3,13 +3,13 @@
 use glam::{DMat3, DVec3};
 
 use crate::error::{Error, Result};
-use crate::frame::Kind;
-use crate::scene::{Picture, Projection, Ray, Scene, Window, linear_from_srgb};
+use crate::frame::{Kind, Wanted};
+use crate::scene::{Emission, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
 use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
 use super::clip::IndexPlane;
-use super::emission::{self, Shading};
+use super::emission::{self, Normals, Shading};
 use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
 use super::medium::Medium;
@@ -26,11 +26,12 @@ const NOISE_SHARE: f64 = 1e-13;
 pub struct Sight {
     /// Linear light, premultiplied, without background.
     pub color: [f64; 4],
-    /// mm from the ray's origin; +∞: none.
+    /// mm from the ray's origin; +∞: none. Of a medium the mean, where it was asked for.
     pub depth_mm: f64,
-    /// Unit, world space, toward lower values; 0 where there is no surface.
+    /// Unit, world space, toward lower values; 0 where there is none. Of a medium the mean's direction, where
+    /// it was asked for.
     pub normal_world: DVec3,
-    /// Φ at the hit, or the projected value; physical.
+    /// Φ at the hit, the projected value, or of a medium the mean, where it was asked for; physical.
     pub value: f64,
     /// Boxes walked.
     pub cells: u32,
@@ -59,6 +60,7 @@ pub struct Tracer<'a> {
     clip_planes: Vec<IndexPlane>,
     noise: f64,
     medium: Option<Medium>,
+    wanted: Wanted,
 }
 
 impl<'a> Tracer<'a> {
@@ -91,7 +93,14 @@ impl<'a> Tracer<'a> {
                 }
                 _ => None,
             },
+            wanted: Wanted::default(),
         })
+    }
+
+    /// With the means of a medium that these planes need, which are integrals of their own.
+    #[must_use]
+    pub fn wanting(self, wanted: Wanted) -> Self {
+        Self { wanted, ..self }
     }
 
     /// What one ray sees. Its direction is a unit vector in world space.
@@ -200,10 +209,50 @@ impl<'a> Tracer<'a> {
         });
         let emitted = emission::integrate(field, interval, medium, shading.as_ref());
         let [r, g, b] = emitted.color;
-        Sight {
-            color: [r, g, b, 1.0 - emitted.transmittance],
+        let opacity = 1.0 - emitted.transmittance;
+        let sight = Sight {
+            color: [r, g, b, opacity],
             cells: emitted.walked,
             ..Sight::NOTHING
+        };
+        if (opacity as f32) < Emission::LAYERS_FROM {
+            return sight;
+        }
+        self.with_means(sight, field, interval, medium, dir_world)
+    }
+
+    /// What a ray sees of a medium, with the means that are wanted.
+    fn with_means<T: Voxel>(
+        &self,
+        seen: Sight,
+        field: &Field<T>,
+        interval: &Interval,
+        medium: &Medium,
+        dir_world: DVec3,
+    ) -> Sight {
+        let kind = Kind::Surface;
+        let Wanted {
+            depth,
+            normal,
+            value,
+            ..
+        } = self.wanted;
+        if !(depth || normal || value) {
+            return Sight { kind, ..seen };
+        }
+        let normals = normal.then(|| Normals {
+            gradient: self.scene.gradient,
+            gradient_world_from_index: self.gradient_world_from_index(),
+            toward_eye: -dir_world,
+        });
+        let range = self.volume.range();
+        let means = emission::means(field, interval, medium, range, normals.as_ref());
+        Sight {
+            depth_mm: interval.enter_mm + means.at_mm,
+            normal_world: means.normal_world.try_normalize().unwrap_or(-dir_world),
+            value: means.value,
+            kind,
+            ..seen
         }
     }
 

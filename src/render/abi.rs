@@ -115,8 +115,9 @@ twin! {
         /// Stored units; outside nothing absorbs.
         absorbs_from: f32,
         absorbs_to: f32,
-        pad_0: u32,
-        pad_1: u32,
+        /// The opacity from which a pixel has a depth, a value and a normal.
+        layers_from: f32,
+        pad: u32,
     }
 }
 

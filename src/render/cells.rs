@@ -59,7 +59,7 @@ fn place([x, y, z]: [usize; 3], [bricks_x, bricks_y, _]: [usize; 3]) -> (usize, 
 }
 
 /// A bit per cell, a word per brick, both x fastest: whether the range of its corners matters. Only leaves
-/// of [`Class::Visit`] hold such cells.
+/// of [`Class::Visit`] hold such cells, and those of [`Class::Homogeneous`], at whose ends rays are sampled.
 fn visited(
     volume: &Volume,
     octree: &Octree,
@@ -76,7 +76,7 @@ fn visited(
     let [leaves_x, leaves_y, _] = leaves.size.map(|n| n as usize);
     with_voxels!(volume.voxels(), voxels => {
         (0..leaves.nodes()).into_par_iter().for_each_init(Vec::new, |lines, node| {
-            if classes[node] != Class::Visit as u8 {
+            if ![Class::Visit as u8, Class::Homogeneous as u8].contains(&classes[node]) {
                 return;
             }
             let first = [

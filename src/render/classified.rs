@@ -9,7 +9,7 @@ use crate::scene::{Filter, Picture, Projection, Scene, Traverse, Window};
 use crate::volume::Volume;
 
 use super::cells;
-use super::classify;
+use super::classify::{self, Class};
 use super::homogeneity::Limit;
 use super::medium::Knots;
 use super::reach::add_reach;
@@ -68,10 +68,8 @@ impl Criterion {
             Self::Iso { iso, iso_error } => {
                 cells::crossed(volume, octree, classes, *iso, *iso_error)
             }
-            Self::Opacity {
-                knots, limit: None, ..
-            } => cells::absorbing(volume, octree, classes, knots),
-            Self::Floor { .. } | Self::Opacity { .. } => Ok(vec![0]),
+            Self::Opacity { knots, .. } => cells::absorbing(volume, octree, classes, knots),
+            Self::Floor { .. } => Ok(vec![0]),
         }
     }
 }
@@ -109,6 +107,8 @@ pub struct Classified {
     criterion: Criterion,
     traverse: Traverse,
     filter: Filter,
+    /// Whether any leaf is of [`Class::Homogeneous`].
+    pub has_homogeneous: bool,
     /// Per octree node its class and, where space is skipped by distance, its reach.
     pub node_class: Buffer<u8>,
     /// A bit per cell that matters, where rays are led past the others together: with the linear filter
@@ -126,6 +126,7 @@ impl Classified {
     ) -> Result<Self> {
         let (traverse, filter) = (scene.sampling.traverse, scene.sampling.filter);
         let mut classes = criterion.classes(octree)?;
+        let has_homogeneous = classes.contains(&(Class::Homogeneous as u8));
         let cells = if traverse == Traverse::Distance && filter == Filter::Linear {
             criterion.cells(volume, octree, &classes)?
         } else {
@@ -138,6 +139,7 @@ impl Classified {
             criterion,
             traverse,
             filter,
+            has_homogeneous,
             node_class: Buffer::upload(device, "octree's classes", &classes)?,
             cells: Buffer::upload(device, "cells that matter", &cells)?,
         })

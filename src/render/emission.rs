@@ -5,8 +5,12 @@ use crate::gpu::Buffer;
 use crate::scene::{Emission, Phong, QuadratureMethod, Rgb, TransferFunction};
 
 use super::abi::EmissionCast;
+use super::gradient::DeviceGradient;
+use super::homogeneity::stand_ins;
 use super::medium::Knots;
-use super::passes::{DeviceTransfer, Run, adaptive_emission, cast_emission};
+use super::passes::{
+    DeviceTransfer, EmissionPlanes, Run, adaptive_emission, cast_emission, integrates,
+};
 use super::picture::View;
 use super::planes::Planes;
 use super::twins;
@@ -17,7 +21,6 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
         phong,
         quadrature,
         homogeneity,
-        ref transfer,
         ..
     } = *emission;
     if homogeneity.is_some() && (phong.is_some() || !quadrature.is_stepped()) {
@@ -25,45 +28,45 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             "homogeneous nodes go with neither shading nor the adaptive quadrature",
         ));
     }
-    let knots = Knots::of(transfer, view.volume);
-    let on_device = match quadrature.method {
-        QuadratureMethod::Preintegrated => transfer_on_device(run, &knots.smooth(), true)?,
-        QuadratureMethod::Adaptive => transfer_on_device(run, &knots, true)?,
-        _ => transfer_on_device(run, &knots, false)?,
-    };
-    let averages = match homogeneity {
+    let with_values = view.wanted.depth || view.wanted.value;
+    let on_device = transfer_on_device(run, view, emission, with_values)?;
+    // Where no leaf counts as homogeneous the rays are followed as without.
+    let node_average = match homogeneity.filter(|_| view.classified.has_homogeneous) {
         Some(_) => {
-            let leaves = view.octree.levels()[0].nodes();
-            let averages = &view.octree.averages()[..leaves];
-            Some(Buffer::upload(run.device, "octree's averages", averages)?)
+            let stand_ins = stand_ins(view.octree, run.variant.filter);
+            Some(Buffer::upload(run.device, "octree's averages", &stand_ins)?)
         }
         None => None,
     };
-    let shaded_by = phong.map(|_| view.gradient);
-    let cast = emission_cast(view, emission, &on_device);
+    let gradient = if phong.is_some() || view.wanted.normal {
+        view.gradient
+    } else {
+        DeviceGradient::none()
+    };
+    let cast = emission_cast(view, emission, &on_device, node_average.is_some());
     let shading = twins::shading(Rgb::BLACK, phong, view.scene.light);
-    let mut color = run.plane("colour plane")?;
-    let mut counters = run.counters(view.wanted.counters)?;
+    let mut planes = EmissionPlanes::new(run, view.wanted)?;
     if quadrature.is_stepped() {
         cast_emission(
             run,
             quadrature.method,
-            shaded_by,
+            phong.is_some(),
+            gradient,
             view.uploaded,
             view.clip,
             view.classified,
-            averages.as_ref(),
+            node_average.as_ref(),
             &on_device,
             &view.rays,
             &cast,
             &shading,
-            &mut color,
-            counters.as_mut(),
+            &mut planes,
         )?;
     } else {
         adaptive_emission(
             run,
-            shaded_by,
+            phong.is_some(),
+            gradient,
             view.uploaded,
             view.clip,
             view.classified,
@@ -71,30 +74,47 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
             &view.rays,
             &cast,
             &shading,
-            &mut color,
-            counters.as_mut(),
+            &mut planes,
         )?;
     }
-    let averages_bytes = averages.as_ref().map_or(0, |averages| averages.bytes());
+    let averages_bytes = node_average.as_ref().map_or(0, |averages| averages.bytes());
+    let (depth, value) = planes.place.unzip();
     Ok(Planes {
-        color,
+        color: planes.color,
         display: None,
-        depth: None,
-        normal: None,
-        value: None,
+        depth,
+        normal: planes.normal,
+        value,
         kind: None,
         certificate: None,
-        counters,
+        counters: planes.counters,
         other_bytes: on_device.bytes() + averages_bytes,
     })
 }
 
-fn transfer_on_device(run: &Run, knots: &Knots, with_sums: bool) -> Result<DeviceTransfer> {
-    let sums = if with_sums { knots.sums() } else { Vec::new() };
+/// The transfer function with what the quadrature needs of it; `with_values` where the layers are averaged.
+fn transfer_on_device(
+    run: &Run,
+    view: &View,
+    emission: &Emission,
+    with_values: bool,
+) -> Result<DeviceTransfer> {
+    let method = emission.quadrature.method;
+    let plain = Knots::of(&emission.transfer, view.volume);
+    let integrates = integrates(method, run.variant.filter);
+    let knots = if integrates { plain.smooth() } else { plain };
+    let (mut sums, mut value_sums) = (Vec::new(), Vec::new());
+    if integrates || method == QuadratureMethod::Adaptive {
+        sums = knots.sums();
+        if with_values {
+            value_sums = knots.value_sums();
+        }
+    }
     Ok(DeviceTransfer {
         values: Buffer::upload(run.device, "transfer function", &knots.values)?,
         colors: Buffer::upload(run.device, "transfer function", &knots.colors)?,
         sums: Buffer::upload(run.device, "transfer function's sums", &sums)?,
+        value_sums: Buffer::upload(run.device, "transfer function's sums", &value_sums)?,
         knots: knots.values.len() as u32,
         color_spread: knots.color_spread(),
         absorbing: knots.absorbing(),
@@ -104,10 +124,14 @@ fn transfer_on_device(run: &Run, knots: &Knots, with_sums: bool) -> Result<Devic
 /// The share of the adaptive quadrature's bound that early termination may use up.
 const ENDED_EARLY: f64 = 0.25;
 
-fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -> EmissionCast {
+fn emission_cast(
+    view: &View,
+    emission: &Emission,
+    on_device: &DeviceTransfer,
+    through_leaves: bool,
+) -> EmissionCast {
     let Emission {
         quadrature,
-        homogeneity,
         ref transfer,
         ..
     } = *emission;
@@ -125,7 +149,7 @@ fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -
         most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
         least_transmission: least_transmission as f32,
         knots: on_device.knots,
-        traverse: if homogeneity.is_some() {
+        traverse: if through_leaves {
             traverse_through_leaves(&view.scene.sampling)
         } else {
             view.traverse()
@@ -134,8 +158,8 @@ fn emission_cast(view: &View, emission: &Emission, on_device: &DeviceTransfer) -
         color_spread: on_device.color_spread,
         absorbs_from: on_device.absorbing[0],
         absorbs_to: on_device.absorbing[1],
-        pad_0: 0,
-        pad_1: 0,
+        layers_from: Emission::LAYERS_FROM,
+        pad: 0,
     }
 }
 

@@ -57,7 +57,7 @@ impl DeviceDirections {
 pub fn needed(scene: &Scene, wanted: Wanted) -> Option<Precomputed> {
     let has_normals = match &scene.picture {
         Picture::Surface { phong, .. } => wanted.normal || phong.is_some(),
-        Picture::Emission(emission) => emission.phong.is_some(),
+        Picture::Emission(emission) => wanted.normal || emission.phong.is_some(),
         Picture::Projection { .. } => false,
     };
     match scene.gradient {

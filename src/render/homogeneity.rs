@@ -14,11 +14,37 @@
 //! - by the light p = ∫ T' κ' that it gives, which over all leaves is 1 at most: as κ' ≥ κmin, it
 //!   adds at most p (δκ/κmin + δc). If that is within E/2 for 1, all such leaves add E/2 at most.
 
-use crate::scene::{Homogeneity, HomogeneityRule, TransferFunction};
+use std::borrow::Cow;
+
+use crate::octree::Octree;
+use crate::scene::{Filter, Homogeneity, HomogeneityRule, TransferFunction};
 use crate::volume::Volume;
 
 use super::medium::unit_absorption;
 use super::ranges::ValueRanges;
+
+/// What stands for each leaf of the octree, in stored units: its average. With the nearest filter the
+/// average is no value of the field, which may lie between two labels: there the leaf's smallest or largest
+/// value stands for it, whichever is nearer to the average. All that is derived above of the average holds
+/// of any value in the leaf's range.
+pub fn stand_ins(octree: &Octree, filter: Filter) -> Cow<'_, [f32]> {
+    let leaves = octree.levels()[0].nodes();
+    let averages = &octree.averages()[..leaves];
+    match filter {
+        Filter::Linear => Cow::Borrowed(averages),
+        Filter::Nearest => {
+            let ranges = octree.ranges()[..leaves].iter();
+            let nearer = |(&average, &[min, max]): (&f32, &[f32; 2])| {
+                if average - min <= max - average {
+                    min
+                } else {
+                    max
+                }
+            };
+            averages.iter().zip(ranges).map(nearer).collect()
+        }
+    }
+}
 
 /// `--homogeneity` for one volume and transfer function.
 #[derive(Debug, Clone, Copy, PartialEq)]

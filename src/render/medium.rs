@@ -96,7 +96,18 @@ impl Knots {
     /// the first knot on of colour times absorption, and, in the last channel, of absorption, of
     /// the unit length.
     pub fn sums(&self) -> Vec<[f32; 4]> {
-        let mut sum = [0.0; 4];
+        let first_four = |sums: [f32; 5]| [sums[0], sums[1], sums[2], sums[3]];
+        self.integrals().into_iter().map(first_four).collect()
+    }
+
+    /// As [`Knots::sums`], of value times absorption.
+    pub fn value_sums(&self) -> Vec<f32> {
+        self.integrals().into_iter().map(|sums| sums[4]).collect()
+    }
+
+    /// As [`Knots::sums`], of colour, 1 and value, each times absorption.
+    fn integrals(&self) -> Vec<[f32; 5]> {
+        let mut sum = [0.0; 5];
         let mut pairs = Vec::with_capacity(2 * self.values.len());
         for k in 0..self.values.len() {
             if k > 0 {
@@ -106,10 +117,12 @@ impl Knots {
                 let ends = || std::iter::once(0.0).chain(parts.iter().copied());
                 for (from, to) in ends().zip(ends().skip(1).chain([1.0])) {
                     for (place, weight) in GAUSS {
-                        let at = |c: usize| c0[c] + (c1[c] - c0[c]) * (from + (to - from) * place);
+                        let f = from + (to - from) * place;
+                        let at = |c: usize| c0[c] + (c1[c] - c0[c]) * f;
                         let absorption = (v1 - v0) * (to - from) * weight * unit_absorption(at(3));
-                        for (c, sum) in sum.iter_mut().enumerate() {
-                            *sum += absorption * if c < 3 { at(c) } else { 1.0 };
+                        let of = [at(0), at(1), at(2), 1.0, v0 + (v1 - v0) * f];
+                        for (sum, of) in sum.iter_mut().zip(of) {
+                            *sum += absorption * of;
                         }
                     }
                 }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::{Buffer, Device, PassTime, Timings};
 use crate::octree::Octree;
-use crate::scene::{Picture, Sampling, Scene, Storage};
+use crate::scene::{Picture, Sampling, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::classified::{Criterion, RecentlyClassified};
@@ -171,9 +171,12 @@ impl<'a> Renderer<'a> {
     /// The device fails or has no room, cannot hold the voxels as the sampling wants them, or the
     /// step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
-        check_step(scene, self.volume)?;
+        let method = scene.sampling_method();
+        if method == SamplingMethod::Fixed {
+            check_step(scene, self.volume)?;
+        }
         let storage = scene.sampling.voxels;
-        storage.check(scene.sampling_method(), scene.sampling.filter)?;
+        storage.check(method, scene.sampling.filter)?;
         self.upload_voxels(storage)?;
         let uploaded_before = self.device.uploaded_bytes();
         self.precompute(scene, wanted)?;
@@ -295,5 +298,5 @@ fn check_step(scene: &Scene, volume: &Volume) -> Result<()> {
     Err(Error::usage(format!(
         "a step of {step_voxels} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24"
     ))
-    .hint("choose a larger --step"))
+    .hint("choose a larger --step, or in dvr --quad adaptive, else --sampling exact, which take none"))
 }

@@ -5,6 +5,7 @@ use crate::extent::ImageSize;
 use crate::frame::{Certificate, Frame, Kind, Wanted};
 use crate::gpu::{Buffer, Device, DeviceKind, Element};
 use crate::memory;
+use crate::scene::Emission;
 use crate::volume::Rescale;
 
 use super::passes::Counters;
@@ -45,6 +46,7 @@ pub struct Planes {
     pub normal: Option<Buffer<[f32; 4]>>,
     /// In stored units.
     pub value: Option<Buffer<f32>>,
+    /// `None`: of a medium, which is there where it is opaque enough to have layers.
     pub kind: Option<Buffer<u32>>,
     pub certificate: Option<Buffer<u32>>,
     pub counters: Option<Counters>,
@@ -73,7 +75,7 @@ impl Planes {
     }
 
     /// Waits for the passes and copies the wanted planes; values become physical by `rescale`. A
-    /// wanted layer that the picture does not have (a dvr's depth) is filled with what "nothing"
+    /// wanted layer that the picture does not have (a projection's normal) is filled with what "nothing"
     /// means for it.
     ///
     /// # Errors
@@ -87,7 +89,11 @@ impl Planes {
     ) -> Result<Frame> {
         let layers = ReadBack { device, size };
         let nothing = Kind::Nothing as u32;
-        let kind = layers.plane(wanted.kind || wanted.value, self.kind.as_ref(), nothing)?;
+        let color = self.color.download(device)?;
+        let kind = match &self.kind {
+            Some(_) => layers.plane(wanted.kind || wanted.value, self.kind.as_ref(), nothing)?,
+            None => (wanted.kind || wanted.value).then(|| kind_of_medium(&color)),
+        };
         let mut value = layers.plane(wanted.value, self.value.as_ref(), 0.0)?;
         if let (Some(value), Some(kind)) = (&mut value, &kind) {
             for (value, &kind) in value.iter_mut().zip(kind) {
@@ -102,7 +108,7 @@ impl Planes {
         };
         Ok(Frame {
             size,
-            color: self.color.download(device)?,
+            color,
             display: layers.plane(wanted.display, self.display.as_ref(), [0.0; 4])?,
             depth: layers.plane(wanted.depth, self.depth.as_ref(), f32::INFINITY)?,
             normal: normal.map(|plane| plane.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()),
@@ -117,6 +123,18 @@ impl Planes {
             )?,
         })
     }
+}
+
+/// A medium is a surface where it is opaque enough to have layers.
+fn kind_of_medium(color: &[[f32; 4]]) -> Vec<u32> {
+    let kind = |&[_, _, _, opacity]: &[f32; 4]| {
+        if opacity >= Emission::LAYERS_FROM {
+            Kind::Surface
+        } else {
+            Kind::Nothing
+        }
+    };
+    color.iter().map(|color| kind(color) as u32).collect()
 }
 
 /// The copying of planes of one size.

@@ -42,6 +42,9 @@ pub struct Emission {
 impl Emission {
     pub const DEFAULT_TERMINATION: f64 = 0.999;
 
+    /// The opacity from which a pixel has layers: a depth, a value, a normal, a kind.
+    pub const LAYERS_FROM: f32 = 0.01;
+
     /// Unshaded, with the default quadrature and termination.
     pub fn of(transfer: TransferFunction) -> Self {
         Self {

@@ -199,6 +199,7 @@ pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String,
     let subject = Subject {
         center_world,
         radius_mm,
+        spacing_mm: volume.geometry().spacing_mm(),
         range: volume.range(),
         robust_range: histogram.range,
         otsu: histogram.otsu(),

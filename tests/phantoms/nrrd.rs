@@ -9,8 +9,8 @@ use angioray::error::ErrorKind;
 use angioray::extent::Dims;
 use angioray::progress::Silent;
 use angioray::volume::{
-    Geometry, NonFinite, PhantomKind, ReadOptions, Rescale, Volume, VoxelType, Voxels, phantom, read,
-    write_nrrd,
+    Geometry, NonFinite, PhantomKind, ReadOptions, Rescale, Volume, VoxelType, Voxels, phantom,
+    read, write_nrrd,
 };
 use flate2::read::GzDecoder;
 use glam::{DMat3, DVec3};

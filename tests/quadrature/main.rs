@@ -1,12 +1,15 @@
-//! The rules that sum light along a ray: their order of convergence, what they keep of a spike, and
-//! whether the adaptive one keeps its bound.
+//! The rules that sum light along a ray: their order of convergence, what they keep of a spike, labels and
+//! layers, and whether the adaptive one keeps its bound.
 
 #[path = "../common/mod.rs"]
 mod common;
 
 mod adaptive;
 mod convergence;
+mod labels;
+mod layers;
 mod spike;
+mod unlike;
 
 use angioray::bench::convergence::{self as convergence_of, apart};
 use angioray::gpu::Device;

@@ -1,20 +1,22 @@
 //! `kernels/pass/adaptive_emission.cl`
 
 use crate::error::Result;
-use crate::gpu::{Buffer, input, output, value};
+use crate::gpu::{input, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 use crate::render::classified::Classified;
 
 use super::{
-    Counters, DeviceClip, DeviceGradient, DeviceTransfer, DeviceVolume, Run, levels, switch, voxels,
+    DeviceClip, DeviceGradient, DeviceTransfer, DeviceVolume, EmissionPlanes, Run, levels, switch,
+    voxels,
 };
 
-/// Emission and absorption along each ray within an error bound: `color`, linear light,
-/// premultiplied.
+/// Emission and absorption along each ray, its colour within an error bound. `gradient`, where normals
+/// are made use of.
 #[allow(clippy::too_many_arguments)]
 pub fn adaptive_emission(
     run: &mut Run,
-    shaded_by: Option<DeviceGradient>,
+    shaded: bool,
+    gradient: DeviceGradient,
     volume: &DeviceVolume,
     clip: &DeviceClip,
     classified: &Classified,
@@ -22,17 +24,15 @@ pub fn adaptive_emission(
     rays: &RayGrid,
     cast: &EmissionCast,
     shading: &Shading,
-    color: &mut Buffer<[f32; 4]>,
-    counters: Option<&mut Counters>,
+    planes: &mut EmissionPlanes,
 ) -> Result<()> {
-    let with_counters = counters.is_some();
     let variant = run.variant;
-    let gradient = shaded_by.unwrap_or(DeviceGradient::none());
+    let sums_values = planes.place.is_some();
     let defines = gradient
         .define(variant.defines())
         .with("LANES", variant.lanes)
-        .with("SHADED", switch(shaded_by.is_some()))
-        .with("COUNTERS", switch(with_counters));
+        .with("SHADED", switch(shaded));
+    let defines = planes.define(defines);
     let pass = run
         .built
         .pass(run.device, "adaptive_emission", defines, || {
@@ -44,21 +44,23 @@ pub fn adaptive_emission(
                 input::<f32>("knot_values"),
                 input::<[f32; 4]>("knot_colors"),
                 input::<[f32; 4]>("knot_sums"),
+            ];
+            signature.extend(sums_values.then(|| input::<f32>("knot_value_sums")));
+            signature.extend([
                 DeviceClip::planes_parameter(),
                 DeviceClip::count_parameter(),
-            ];
+            ]);
             signature.extend(gradient.parameters());
             signature.extend([
                 value::<VolumeGrid>("volume"),
                 value::<RayGrid>("rays"),
                 value::<EmissionCast>("cast"),
                 value::<Shading>("shading"),
-                output::<[f32; 4]>("color"),
             ]);
-            signature.extend(Counters::parameters(with_counters));
+            signature.extend(planes.parameters());
             signature
         })?;
-    let launch = run
+    let mut launch = run
         .voxels
         .give(pass.launch(run.device))
         .input(&classified.node_class)
@@ -66,15 +68,18 @@ pub fn adaptive_emission(
         .input(&classified.cells)
         .input(&transfer.values)
         .input(&transfer.colors)
-        .input(&transfer.sums)
-        .input(&clip.planes)
-        .value(&clip.count);
+        .input(&transfer.sums);
+    if sums_values {
+        launch = launch.input(&transfer.value_sums);
+    }
+    let launch = launch.input(&clip.planes).value(&clip.count);
     let launch = gradient
         .give(launch)
         .value(&volume.grid)
         .value(rays)
         .value(cast)
-        .value(shading)
-        .output(color);
-    Counters::give(counters, launch).run(run.size, run.work_group, run.timings)
+        .value(shading);
+    planes
+        .give(launch)
+        .run(run.size, run.work_group, run.timings)
 }

@@ -1,21 +1,24 @@
 //! `kernels/pass/cast_emission.cl`
 
 use crate::error::Result;
-use crate::gpu::{Buffer, input, output, value};
+use crate::gpu::{Buffer, input, value};
 use crate::render::abi::{EmissionCast, RayGrid, Shading, VolumeGrid};
 use crate::render::classified::Classified;
 use crate::render::variant::quadrature_constant;
-use crate::scene::QuadratureMethod;
+use crate::scene::{Filter, QuadratureMethod};
 
-use super::{Counters, DeviceClip, DeviceGradient, DeviceVolume, Run, levels, switch, voxels};
+use super::{
+    DeviceClip, DeviceGradient, DeviceVolume, EmissionPlanes, Run, levels, switch, voxels,
+};
 
 /// A transfer function on the device, knots ascending in stored units.
 pub struct DeviceTransfer {
     pub values: Buffer<f32>,
     /// Linear light, opacity of the unit length in the last channel.
     pub colors: Buffer<[f32; 4]>,
-    /// As `mean_medium` of `preintegrated.clh` has them; empty where no rule wants them.
+    /// As `KnotSums` of `preintegrated.clh` has them; empty where no rule wants them.
     pub sums: Buffer<[f32; 4]>,
+    pub value_sums: Buffer<f32>,
     pub knots: u32,
     /// The most by which the knots' colours differ in a channel.
     pub color_spread: f32,
@@ -26,17 +29,24 @@ pub struct DeviceTransfer {
 impl DeviceTransfer {
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.values.bytes() + self.colors.bytes() + self.sums.bytes()
+        self.values.bytes() + self.colors.bytes() + self.sums.bytes() + self.value_sums.bytes()
     }
 }
 
-/// Emission and absorption along each ray by `method`: `color`, linear light, premultiplied.
-/// `node_average`, of the leaves, where some are homogeneous.
+/// Whether a rule at fixed steps integrates the transfer function between two samples' values: with the
+/// nearest filter no value lies between them.
+pub fn integrates(method: QuadratureMethod, filter: Filter) -> bool {
+    method == QuadratureMethod::Preintegrated && filter == Filter::Linear
+}
+
+/// Emission and absorption along each ray by `method`. `gradient`, where normals are made use of;
+/// `node_average`, what stands for each leaf, where some are homogeneous.
 #[allow(clippy::too_many_arguments)]
 pub fn cast_emission(
     run: &mut Run,
     method: QuadratureMethod,
-    shaded_by: Option<DeviceGradient>,
+    shaded: bool,
+    gradient: DeviceGradient,
     volume: &DeviceVolume,
     clip: &DeviceClip,
     classified: &Classified,
@@ -45,20 +55,18 @@ pub fn cast_emission(
     rays: &RayGrid,
     cast: &EmissionCast,
     shading: &Shading,
-    color: &mut Buffer<[f32; 4]>,
-    counters: Option<&mut Counters>,
+    planes: &mut EmissionPlanes,
 ) -> Result<()> {
-    let with_counters = counters.is_some();
     let variant = run.variant;
-    let integrates = method == QuadratureMethod::Preintegrated;
-    let gradient = shaded_by.unwrap_or(DeviceGradient::none());
+    let integrates = integrates(method, variant.filter);
+    let sums_values = integrates && planes.place.is_some();
     let defines = gradient
         .define(variant.defines())
         .with("LANES", variant.lanes)
         .with("QUADRATURE", quadrature_constant(method))
         .with("HOMOGENEOUS", switch(node_average.is_some()))
-        .with("SHADED", switch(shaded_by.is_some()))
-        .with("COUNTERS", switch(with_counters));
+        .with("SHADED", switch(shaded));
+    let defines = planes.define(defines);
     let pass = run.built.pass(run.device, "cast_emission", defines, || {
         let mut signature = vec![
             voxels(variant),
@@ -69,6 +77,7 @@ pub fn cast_emission(
             input::<[f32; 4]>("knot_colors"),
         ];
         signature.extend(integrates.then(|| input::<[f32; 4]>("knot_sums")));
+        signature.extend(sums_values.then(|| input::<f32>("knot_value_sums")));
         signature.extend(node_average.map(|_| input::<f32>("node_average")));
         signature.extend([
             DeviceClip::planes_parameter(),
@@ -80,9 +89,8 @@ pub fn cast_emission(
             value::<RayGrid>("rays"),
             value::<EmissionCast>("cast"),
             value::<Shading>("shading"),
-            output::<[f32; 4]>("color"),
         ]);
-        signature.extend(Counters::parameters(with_counters));
+        signature.extend(planes.parameters());
         signature
     })?;
     let mut launch = run
@@ -96,6 +104,9 @@ pub fn cast_emission(
     if integrates {
         launch = launch.input(&transfer.sums);
     }
+    if sums_values {
+        launch = launch.input(&transfer.value_sums);
+    }
     if let Some(node_average) = node_average {
         launch = launch.input(node_average);
     }
@@ -105,7 +116,8 @@ pub fn cast_emission(
         .value(&volume.grid)
         .value(rays)
         .value(cast)
-        .value(shading)
-        .output(color);
-    Counters::give(counters, launch).run(run.size, run.work_group, run.timings)
+        .value(shading);
+    planes
+        .give(launch)
+        .run(run.size, run.work_group, run.timings)
 }

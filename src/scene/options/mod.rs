@@ -11,6 +11,7 @@
 mod bound;
 mod camera;
 mod clip;
+mod cost;
 mod file;
 mod gradient;
 pub(crate) mod group;
@@ -185,6 +186,18 @@ impl SceneOptions {
     /// As [`SceneOptions::checked`]; an order statistic, which [`SceneOptions::measured`] replaces; an
     /// empty window; an impossible camera.
     pub fn resolve(&self, subject: &Subject) -> Result<Resolved> {
+        let Some((quad, note)) = self.without_costly_steps(subject) else {
+            return self.resolve_as_said(subject);
+        };
+        let mut suited = self.clone();
+        suited.picture.quad = Some(quad);
+        let mut resolved = suited.resolve_as_said(subject)?;
+        resolved.notes.push(note);
+        Ok(resolved)
+    }
+
+    /// As [`SceneOptions::resolve`], with the quadrature's default whatever it costs.
+    fn resolve_as_said(&self, subject: &Subject) -> Result<Resolved> {
         let method = self.method();
         let mut options = Self {
             volume: self.volume.clone().filled(),
@@ -300,6 +313,7 @@ impl SceneOptions {
             ));
         }
         notes.extend(filled.clip.notes(subject));
+        notes.extend(filled.cost_note(subject));
         if filled.picture.mode() == Mode::Dvr && given.tf.is_none() {
             let preset = TransferFile::DEFAULT_PRESET;
             notes.push(format!("tf = {preset}: --tf chooses another"));

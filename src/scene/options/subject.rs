@@ -11,6 +11,8 @@ pub struct Subject {
     pub center_world: DVec3,
     /// Radius of the bounding sphere, mm.
     pub radius_mm: f64,
+    /// Along the voxel axes.
+    pub spacing_mm: DVec3,
     /// Physical values.
     pub range: Range,
     /// Physical values without a few far-away voxels and without padding: what defaults are made

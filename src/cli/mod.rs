@@ -31,6 +31,7 @@ use crate::error::{Error, Result};
 #[derive(Parser)]
 #[command(
     name = "angioray",
+    bin_name = "angioray",
     version,
     arg_required_else_help = true,
     max_term_width = 100
@@ -74,13 +75,13 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments.command.run(),
         Err(stop) => match stop.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                terminal::to_stdout(|out| write!(out, "{}", stop.render()))
+                terminal::lines_to_stdout(|out| out.block(stop.render()))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-                terminal::message(stop.render());
+                terminal::message_block(stop.render());
                 return ExitCode::from(2);
             }
-            _ => Err(misused(&stop)),
+            _ => Err(misused(&requoted(stop))),
         },
     };
     match outcome {
@@ -89,6 +90,17 @@ pub fn main() -> ExitCode {
             terminal::error(&error);
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// The parser's complaint about the arguments as they are shown: it quotes them, and a line break in one
+/// would part the complaint at the wrong places.
+fn requoted(stop: clap::Error) -> clap::Error {
+    let shown =
+        std::env::args_os().map(|argument| terminal::on_one_line(argument.to_string_lossy()));
+    match Arguments::try_parse_from(shown) {
+        Err(same) if same.kind() == stop.kind() => same,
+        _ => stop,
     }
 }
 

@@ -1,6 +1,6 @@
 //! `angioray info`.
 
-use std::io::{self, Write};
+use std::io;
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use super::load::{Loaded, Source};
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::VolumeStats;
-use super::terminal::to_stdout;
+use super::terminal::{Lines, json_to_stdout, lines_to_stdout};
 
 /// Columns of the printed histogram.
 const WIDTH: usize = 60;
@@ -70,12 +70,9 @@ impl InfoArguments {
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let info = Info::of(&source, &loaded, &octree);
         if json {
-            return to_stdout(|out| {
-                serde_json::to_writer_pretty(&mut *out, &info)?;
-                writeln!(out)
-            });
+            return json_to_stdout(&info);
         }
-        to_stdout(|out| info.print(out, &loaded.histogram))
+        lines_to_stdout(|out| info.print(out, &loaded.histogram))
     }
 }
 
@@ -92,24 +89,21 @@ fn print_carried(carried: &Carried, json: bool) -> Result<()> {
             "content": carried.content,
             "scene": scene,
         });
-        return to_stdout(|out| {
-            serde_json::to_writer_pretty(&mut *out, &about)?;
-            writeln!(out)
-        });
+        return json_to_stdout(&about);
     }
-    to_stdout(|out| {
+    lines_to_stdout(|out| {
         // Comments, so that all of it is a scene file.
-        writeln!(out, "# {picture}")?;
+        out.line(format_args!("# {picture}"))?;
         for (name, value) in [
             ("made by angioray", &carried.version),
             ("on", &carried.device),
             ("of a volume with the content", &carried.content),
         ] {
             if let Some(value) = value {
-                writeln!(out, "# {name} {value}")?;
+                out.line(format_args!("# {name} {value}"))?;
             }
         }
-        writeln!(out, "{}", carried.scene.trim_end())
+        out.block(carried.scene.trim_end())
     })
 }
 
@@ -184,12 +178,12 @@ impl Info {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, histogram: &Histogram) -> io::Result<()> {
+    fn print(&self, out: &mut Lines, histogram: &Histogram) -> io::Result<()> {
         let volume = &self.volume;
         let [min, max] = volume.range;
         let value = |value| concise_within(value, Range { min, max });
         let triple = |each: [f64; 3]| each.map(fine).join(" ");
-        let mut row = |name: &str, text: String| writeln!(out, "{name:<14} {text}");
+        let mut row = |name: &str, text: String| out.line(format_args!("{name:<14} {text}"));
         row("file", volume.file.clone())?;
         let [nx, ny, nz] = volume.dims;
         row(
@@ -229,14 +223,12 @@ impl Info {
                 100.0 * tree.share_of_volume
             ),
         )?;
-        writeln!(
-            out,
-            "\nshare of the voxels by value, from each line's on; the bars are logarithmic"
-        )?;
+        out.line("")?;
+        out.line("share of the voxels by value, from each line's on; the bars are logarithmic")?;
         if [histogram.range.min, histogram.range.max] != volume.range {
-            writeln!(out, "the first and the last line count what lies beyond")?;
+            out.line("the first and the last line count what lies beyond")?;
         }
-        writeln!(out, "{}", histogram.text(WIDTH).trim_end())
+        out.block(histogram.text(WIDTH).trim_end())
     }
 }
 

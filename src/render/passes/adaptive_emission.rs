@@ -35,7 +35,7 @@ pub fn adaptive_emission(
         .with("COUNTERS", switch(with_counters));
     let pass = run
         .built
-        .pass(run.device, "adaptive_emission", defines, || {
+        .pass("adaptive_emission", defines, || {
             let mut signature = vec![
                 voxels(variant),
                 input::<u8>("node_class"),

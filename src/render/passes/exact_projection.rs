@@ -34,7 +34,7 @@ pub fn exact_projection(
         .with("COUNTERS", switch(with_counters));
     let pass = run
         .built
-        .pass(run.device, "exact_projection", defines, || {
+        .pass("exact_projection", defines, || {
             let mut signature = vec![
                 voxels(variant),
                 input::<u8>("node_class"),

@@ -3,10 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const GROUND: &[&str] = &["error", "extent", "kept", "output", "progress", "stop"];
+const GROUND: &[&str] = &[
+    "crash", "error", "extent", "kept", "output", "progress", "stop",
+];
 
 /// A module and the modules, beside the ground floor's, that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
+    ("crash", &[]),
     ("error", &[]),
     ("extent", &[]),
     ("kept", &[]),

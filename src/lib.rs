@@ -4,6 +4,7 @@
 //! [`render`] casts it on an OpenCL device, [`mod@reference`] in double precision on the host; both
 //! give a [`frame::Frame`], which is written as a picture. ARCHITECTURE.md draws the whole.
 
+pub mod abrupt;
 pub mod batch;
 pub mod bench;
 pub mod cli;
@@ -14,8 +15,10 @@ pub mod extent;
 pub mod frame;
 pub mod gpu;
 pub mod hardcases;
+pub mod input;
 pub mod kept;
 pub mod measure;
+pub mod memory;
 pub mod octree;
 pub mod output;
 pub mod progress;

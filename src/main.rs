@@ -2,6 +2,11 @@
 
 use std::process::ExitCode;
 
+use angioray::memory::Allocator;
+
+#[global_allocator]
+static ALLOCATOR: Allocator = Allocator;
+
 fn main() -> ExitCode {
     // SAFETY: the program begins here, with one thread.
     let process = unsafe { angioray::gpu::process::begin() };

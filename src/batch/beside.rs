@@ -15,14 +15,18 @@ const WAITING: usize = 1;
 /// made.
 ///
 /// # Errors
-/// Those of `take`.
+/// Those of `take`; the system starts no thread.
 pub fn beside<T: Send, R: Send>(
     make: impl Iterator<Item = Result<T>>,
     take: impl FnOnce(&mut dyn Iterator<Item = Result<T>>) -> Result<R> + Send,
 ) -> Result<R> {
     thread::scope(|scope| {
         let (sender, receiver) = sync_channel(WAITING);
-        let taker = scope.spawn(move || take(&mut receiver.into_iter()));
+        let taker = thread::Builder::new()
+            .spawn_scoped(scope, move || take(&mut receiver.into_iter()))
+            .map_err(|cause| {
+                Error::resource(format!("no thread can be started to write frames: {cause}"))
+            })?;
         for made in make {
             let failed = made.is_err();
             if sender.send(made).is_err() || failed {

@@ -52,7 +52,7 @@ mod tests {
             section: section.into(),
             label: "map".into(),
             caption: String::new(),
-            frame: Frame::blank(ImageSize::new(1, 1).unwrap(), Wanted::DISPLAY),
+            frame: Frame::blank(ImageSize::new(1, 1).unwrap(), Wanted::DISPLAY).unwrap(),
         };
         let names = ["head_1", "head-1", "Head 1", "head-1 map-2", "neck"];
         let expected = [

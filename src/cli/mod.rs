@@ -26,6 +26,7 @@ use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 use crate::error::{Error, Result};
+use crate::volume;
 
 /// Pictures from angiograms and other sparse scalar volumes, without a window
 #[derive(Parser)]
@@ -71,7 +72,7 @@ impl Command {
 /// The whole program: its arguments, its work, its exit code.
 pub fn main() -> ExitCode {
     let outcome = match Arguments::try_parse() {
-        Ok(arguments) => arguments.command.run(),
+        Ok(arguments) => ready().and_then(|()| arguments.command.run()),
         Err(stop) => match stop.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
                 terminal::to_stdout(|out| write!(out, "{}", stop.render()))
@@ -90,6 +91,15 @@ pub fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// What the program needs of the system before it works: threads, and an end in words where a file that
+/// it reads is shortened.
+fn ready() -> Result<()> {
+    rayon::ThreadPoolBuilder::new()
+        .build_global()
+        .map_err(|cause| Error::resource(format!("no threads can be started: {cause}")))?;
+    volume::end_when_shortened(terminal::lines)
 }
 
 /// The parser's complaint as one line and a hint.

@@ -31,8 +31,13 @@ pub fn note(sentence: impl Display) {
 }
 
 pub fn error(error: &Error) {
-    message(format_args!("error: {error}"));
-    if let Some(hint) = error.hint_text() {
-        message(format_args!("hint: {hint}"));
+    message(lines(error).trim_end());
+}
+
+/// An error as it is printed: a line, and one for its hint.
+pub fn lines(error: &Error) -> String {
+    match error.hint_text() {
+        Some(hint) => format!("error: {error}\nhint: {hint}\n"),
+        None => format!("error: {error}\n"),
     }
 }

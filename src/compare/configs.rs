@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::input;
 use crate::scene::toml_error::located;
 use crate::scene::{Mode, Part, SceneFile, SceneOptions, Setting};
 
@@ -20,6 +21,9 @@ pub struct Configs {
     settings: Vec<Config>,
 }
 
+/// More are no comparison that anyone waits for.
+const MOST_SETTINGS: usize = 256;
+
 const HINT: &str = "write [[setting]], a name, and keys such as step = 0.5";
 
 #[derive(Debug, Clone, PartialEq)]
@@ -35,8 +39,7 @@ impl Configs {
     /// The file cannot be read; usage: it is no TOML, has other tables than `[[setting]]`, or a
     /// setting has no name or another's, or says what no setting can.
     pub fn read(path: &Path) -> Result<Self> {
-        let text =
-            std::fs::read_to_string(path).map_err(|cause| Error::reading(path, "read", &cause))?;
+        let text = input::text(path, "read the settings")?;
         Self::parse(&text, &path.display().to_string())
     }
 
@@ -51,6 +54,12 @@ impl Configs {
         let Some(toml::Value::Array(entries)) = table.get("setting") else {
             return Err(wrong("there is no [[setting]]".into()));
         };
+        if entries.len() > MOST_SETTINGS {
+            return Err(wrong(format!(
+                "{} settings, of which {MOST_SETTINGS} are the most",
+                entries.len()
+            )));
+        }
         let mut settings: Vec<Config> = Vec::new();
         for (at, entry) in entries.iter().enumerate() {
             let toml::Value::Table(entry) = entry else {

@@ -1,6 +1,6 @@
 //! The texts that a picture carries.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
@@ -15,6 +15,14 @@ use super::{exr, png};
 /// A file that cannot be read, is neither, or is damaged.
 pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
     let mut magic = Vec::new();
+    // Asked before opening: opening a pipe would wait for its writer.
+    let about = fs::metadata(path).map_err(|cause| Error::reading(path, "read", &cause))?;
+    if !about.is_file() {
+        return Err(Error::input(format!(
+            "{}: not a regular file: no picture is read from it",
+            path.display()
+        )));
+    }
     File::open(path)
         .and_then(|file| file.take(8).read_to_end(&mut magic))
         .map_err(|cause| Error::reading(path, "read", &cause))?;

@@ -26,6 +26,7 @@ pub use write::write;
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
+use crate::memory;
 
 /// What a pixel's ray met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,23 +82,27 @@ pub struct Frame {
 
 impl Frame {
     /// Everything 0, with the planes that are wanted.
-    pub fn blank(size: ImageSize, wanted: Wanted) -> Self {
-        fn plane<T: Clone + Default>(wanted: bool, pixels: usize) -> Option<Vec<T>> {
-            wanted.then(|| vec![T::default(); pixels])
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub fn blank(size: ImageSize, wanted: Wanted) -> Result<Self> {
+        fn plane<T: Clone + Default>(wanted: bool, pixels: usize) -> Result<Option<Vec<T>>> {
+            let plane = || memory::filled(pixels, T::default(), "a plane of the picture");
+            wanted.then(plane).transpose()
         }
         let pixels = size.pixels();
-        Self {
+        Ok(Self {
             size,
-            color: vec![[0.0; 4]; pixels],
-            display: plane(wanted.display, pixels),
-            depth: plane(wanted.depth, pixels),
-            normal: plane(wanted.normal, pixels),
-            value: plane(wanted.value, pixels),
-            steps: plane(wanted.counters, pixels),
-            nodes: plane(wanted.counters, pixels),
-            kind: plane(wanted.kind, pixels),
-            certificate: plane(wanted.certificate, pixels),
-        }
+            color: memory::filled(pixels, [0.0; 4], "a plane of the picture")?,
+            display: plane(wanted.display, pixels)?,
+            depth: plane(wanted.depth, pixels)?,
+            normal: plane(wanted.normal, pixels)?,
+            value: plane(wanted.value, pixels)?,
+            steps: plane(wanted.counters, pixels)?,
+            nodes: plane(wanted.counters, pixels)?,
+            kind: plane(wanted.kind, pixels)?,
+            certificate: plane(wanted.certificate, pixels)?,
+        })
     }
 
     /// Some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in this

@@ -1,6 +1,7 @@
 //! Display values to integers.
 
 use crate::error::{Error, Result};
+use crate::memory;
 
 use super::Frame;
 
@@ -8,24 +9,22 @@ use super::Frame;
 /// clamped, NaN is 0.
 ///
 /// # Errors
-/// A frame without display plane.
+/// A frame without display plane; not enough memory.
 pub(super) fn rgb8(frame: &Frame) -> Result<Vec<u8>> {
     let display = display_of(frame)?;
-    Ok(display
-        .iter()
-        .flat_map(|[r, g, b, _]| [*r, *g, *b])
-        .map(|v| nearest_level(v, u8::MAX.into()) as u8)
-        .collect())
+    let mut bytes = memory::room(3 * display.len(), "the picture's bytes")?;
+    let channels = display.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+    bytes.extend(channels.map(|v| nearest_level(v, u8::MAX.into()) as u8));
+    Ok(bytes)
 }
 
 /// Like [`rgb8`] with 0..65535, two bytes a channel, the high byte first.
 pub(super) fn rgb16_big_endian(frame: &Frame) -> Result<Vec<u8>> {
     let display = display_of(frame)?;
-    Ok(display
-        .iter()
-        .flat_map(|[r, g, b, _]| [*r, *g, *b])
-        .flat_map(|v| nearest_level(v, u16::MAX).to_be_bytes())
-        .collect())
+    let mut bytes = memory::room(6 * display.len(), "the picture's bytes")?;
+    let channels = display.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+    bytes.extend(channels.flat_map(|v| nearest_level(v, u16::MAX).to_be_bytes()));
+    Ok(bytes)
 }
 
 fn display_of(frame: &Frame) -> Result<&[[f32; 4]]> {

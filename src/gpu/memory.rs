@@ -6,6 +6,7 @@ use std::ops::Deref;
 use ocl::core::{self, Event, Mem, MemFlags};
 
 use crate::error::{Error, Result};
+use crate::memory;
 
 use super::{Device, Element, device_error};
 
@@ -132,9 +133,9 @@ impl<T: Element> Buffer<T> {
     /// Waits for what was launched before and copies the elements back.
     ///
     /// # Errors
-    /// The device failed.
+    /// The device failed; not enough memory.
     pub fn download(&self, device: &Device) -> Result<Vec<T>> {
-        let mut elements = vec![T::zeroed(); self.len];
+        let mut elements = memory::filled(self.len, T::zeroed(), "a plane of the picture")?;
         if self.len > 0 {
             let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut elements);
             // SAFETY: blocking, so `bytes` outlives the copy.

@@ -128,7 +128,7 @@ fn write(path: &Path, frame: &Frame) -> Result<()> {
 /// The picture kept in `path`; nothing where there is none, or none that is whole.
 fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
     let mut file = ZlibDecoder::new(kept::open(path).ok()?);
-    let mut frame = Frame::blank(scene.size, wanted);
+    let mut frame = Frame::blank(scene.size, wanted).ok()?;
     for plane in frame.bytes_mut() {
         file.read_exact(plane).ok()?;
     }

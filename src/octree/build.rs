@@ -1,41 +1,16 @@
-//! Building the tree: leaves from voxels in parallel, then each level from the one below.
+//! Building the tree: leaves from voxels in parallel, then each level from the one below, all in the
+//! place that is theirs in the end.
 
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
+use crate::memory;
 use crate::progress::Progress;
 use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
 use super::{Leaf, Level, Octree};
-
-/// A node while it is built: sums and counts of own voxels make exact averages at every level.
-#[derive(Clone, Copy)]
-struct Node {
-    min: f32,
-    max: f32,
-    sum: f64,
-    voxels: u64,
-}
-
-impl Node {
-    const EMPTY: Self = Self {
-        min: f32::INFINITY,
-        max: f32::NEG_INFINITY,
-        sum: 0.0,
-        voxels: 0,
-    };
-
-    fn join(self, other: Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-            sum: self.sum + other.sum,
-            voxels: self.voxels + other.voxels,
-        }
-    }
-}
 
 /// The voxels along one axis that leaf `l` touches, and how many of them are its own.
 fn span(leaf: u32, l: u32, leaves: u32, voxels: u32) -> (usize, usize, usize) {
@@ -49,42 +24,81 @@ fn span(leaf: u32, l: u32, leaves: u32, voxels: u32) -> (usize, usize, usize) {
     (first as usize, touched_end as usize, own_end as usize)
 }
 
+/// The nodes' ranges, and the sums of their own voxels: with the counts, which the grid tells, they make
+/// exact averages at every level.
+struct Nodes<'a> {
+    ranges: &'a mut [[f32; 2]],
+    sums: &'a mut [f64],
+}
+
+const NO_RANGE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
 impl Octree {
+    /// Besides the tree itself it takes eight bytes a node while it is built.
+    ///
     /// # Errors
-    /// More nodes than 32 bits count.
+    /// More nodes than 32 bits count; not enough memory.
     pub fn build(volume: &Volume, leaf: Leaf, progress: &dyn Progress) -> Result<Self> {
         let dims = volume.dims();
         let levels = levels(dims, leaf)?;
+        let all = levels.iter().map(Level::nodes).sum();
+        let mut ranges = memory::filled(all, NO_RANGE, "the octree")?;
+        let mut averages = memory::room(all, "the octree")?;
+        let mut sums = memory::filled(all, 0.0, "the octree")?;
         let leaves = levels[0];
         progress.begin(
             "octree",
             u64::from(leaves.size[1]) * u64::from(leaves.size[2]),
         );
-        let mut nodes: Vec<Node> = vec![Node::EMPTY; leaves.nodes()];
-        with_voxels!(volume.voxels(), voxels => nodes
-        .par_chunks_mut(leaves.size[0] as usize)
+        let row = leaves.size[0] as usize;
+        with_voxels!(volume.voxels(), voxels => ranges[..leaves.nodes()]
+        .par_chunks_mut(row)
+        .zip(sums[..leaves.nodes()].par_chunks_mut(row))
         .enumerate()
-        .for_each(|(row, nodes)| {
-            leaf_row(voxels, dims, leaf, leaves, row, nodes);
+        .for_each(|(row, (ranges, sums))| {
+            leaf_row(voxels, dims, leaf, leaves, row, Nodes { ranges, sums });
             progress.advance(1);
         }));
-        let mut below = 0;
         for pair in levels.windows(2) {
-            let built = parents(&nodes[below..], pair[0], pair[1]);
-            below = nodes.len();
-            nodes.extend(built);
+            parents(&mut ranges, NO_RANGE, join, pair[0], pair[1]);
+            parents(&mut sums, 0.0, |a, b| a + b, pair[0], pair[1]);
+        }
+        for (level, edge) in levels
+            .iter()
+            .zip((0..).map(|l| u64::from(leaf.edge()) << l))
+        {
+            let sums = &sums[level.offset as usize..][..level.nodes()];
+            let mean =
+                |(node, sum): (usize, &f64)| (sum / own_voxels(node, *level, edge, dims)) as f32;
+            averages.par_extend(sums.par_iter().enumerate().map(mean));
         }
         progress.end();
         Ok(Self {
             leaf,
             levels,
-            ranges: nodes.iter().map(|n| [n.min, n.max]).collect(),
-            averages: nodes
-                .iter()
-                .map(|n| (n.sum / n.voxels as f64) as f32)
-                .collect(),
+            ranges,
+            averages,
         })
     }
+}
+
+fn join(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// How many voxels are a node's own, of a level whose nodes have this edge.
+fn own_voxels(node: usize, level: Level, edge: u64, dims: Dims) -> f64 {
+    let [nx, ny, _] = level.size.map(|n| n as usize);
+    let place = [node % nx, node / nx % ny, node / (nx * ny)];
+    let along = [0, 1, 2].map(|axis| {
+        let (first, voxels) = (place[axis] as u64 * edge, u64::from(dims.array()[axis]));
+        if place[axis] + 1 == level.size[axis] as usize {
+            voxels - first
+        } else {
+            edge
+        }
+    });
+    along.iter().product::<u64>() as f64
 }
 
 /// Sizes and offsets of all levels up to the single root.
@@ -120,7 +134,7 @@ fn leaf_row<T: Voxel>(
     leaf: Leaf,
     leaves: Level,
     row: usize,
-    nodes: &mut [Node],
+    nodes: Nodes,
 ) {
     let [nx, ny, nz] = dims.array();
     let rows_y = leaves.size[1] as usize;
@@ -132,7 +146,8 @@ fn leaf_row<T: Voxel>(
             let start = (z * ny as usize + y) * nx as usize;
             let line = &voxels[start..start + nx as usize];
             let own_line = y < own_y1 && z < own_z1;
-            for (lx, node) in nodes.iter_mut().enumerate() {
+            let of_nodes = nodes.ranges.iter_mut().zip(nodes.sums.iter_mut());
+            for (lx, (range, sum)) in of_nodes.enumerate() {
                 let (x0, x1, own_x1) = span(leaf.edge(), lx as u32, leaves.size[0], nx);
                 let touched = &line[x0..x1];
                 let (mut min, mut max) = (touched[0], touched[0]);
@@ -141,37 +156,40 @@ fn leaf_row<T: Voxel>(
                     max = if v > max { v } else { max };
                 }
                 let (min, max): (f64, f64) = (min.into(), max.into());
-                node.min = node.min.min(min as f32);
-                node.max = node.max.max(max as f32);
+                *range = join(*range, [min as f32, max as f32]);
                 if own_line {
                     let own = &line[x0..own_x1];
-                    node.sum += own.iter().map(|&v| v.into()).sum::<f64>();
-                    node.voxels += own.len() as u64;
+                    *sum += own.iter().map(|&v| v.into()).sum::<f64>();
                 }
             }
         }
     }
 }
 
-/// The level above `children`.
-fn parents(children: &[Node], below: Level, level: Level) -> Vec<Node> {
+/// Fills the level above `below`: each node is joined from its children, beginning with `nothing`.
+fn parents<T: Copy + Send + Sync>(
+    nodes: &mut [T],
+    nothing: T,
+    join: impl Fn(T, T) -> T + Sync,
+    below: Level,
+    level: Level,
+) {
     let [sx, sy, sz] = below.size.map(|n| n as usize);
     let [px, py, _] = level.size.map(|n| n as usize);
-    (0..level.nodes())
-        .into_par_iter()
-        .map(|i| {
-            let (x, y, z) = (2 * (i % px), 2 * (i / px % py), 2 * (i / (px * py)));
-            let mut node = Node::EMPTY;
-            for cz in z..(z + 2).min(sz) {
-                for cy in y..(y + 2).min(sy) {
-                    for cx in x..(x + 2).min(sx) {
-                        node = node.join(children[(cz * sy + cy) * sx + cx]);
-                    }
+    let (lower, upper) = nodes.split_at_mut(level.offset as usize);
+    let children = &lower[below.offset as usize..];
+    let parents = &mut upper[..level.nodes()];
+    parents.par_iter_mut().enumerate().for_each(|(i, parent)| {
+        let (x, y, z) = (2 * (i % px), 2 * (i / px % py), 2 * (i / (px * py)));
+        *parent = nothing;
+        for cz in z..(z + 2).min(sz) {
+            for cy in y..(y + 2).min(sy) {
+                for cx in x..(x + 2).min(sx) {
+                    *parent = join(*parent, children[(cz * sy + cy) * sx + cx]);
                 }
             }
-            node
-        })
-        .collect()
+        }
+    });
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ pub fn render(
 ) -> Result<Frame> {
     let tracer = Tracer::new(volume, scene)?;
     let (size, width) = (scene.size, scene.size.width());
-    let mut frame = Frame::blank(size, wanted);
+    let mut frame = Frame::blank(size, wanted)?;
     progress.begin("reference", u64::from(size.height()));
     for first in (0..size.height()).step_by(BAND_ROWS as usize) {
         let rows = BAND_ROWS.min(size.height() - first);
@@ -81,7 +81,7 @@ pub fn render_pixels(
     /// Between two reports.
     const AT_A_TIME: usize = 256;
     let tracer = Tracer::new(volume, scene)?;
-    let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted);
+    let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;
     progress.begin("reference", pixels.len() as u64);
     for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {
         let sights: Vec<Sight> = some

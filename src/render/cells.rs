@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use crate::error::Result;
+use crate::memory;
 use crate::octree::Octree;
 use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
@@ -14,20 +16,31 @@ use super::ranges::ValueRanges;
 
 /// The cells whose corners lie on both sides of `iso` (stored units), or so near to it that `iso_error`
 /// leaves their side uncertain. `classes` are those of the octree's nodes.
+///
+/// # Errors
+/// Not enough memory.
 pub fn crossed(
     volume: &Volume,
     octree: &Octree,
     classes: &[u8],
     iso: f32,
     iso_error: f32,
-) -> Vec<u64> {
+) -> Result<Vec<u64>> {
     visited(volume, octree, classes, |range| {
         may_cross(range, iso, iso_error)
     })
 }
 
 /// The cells in which some value absorbs light. `classes` are those of the octree's nodes.
-pub fn absorbing(volume: &Volume, octree: &Octree, classes: &[u8], knots: &Knots) -> Vec<u64> {
+///
+/// # Errors
+/// Not enough memory.
+pub fn absorbing(
+    volume: &Volume,
+    octree: &Octree,
+    classes: &[u8],
+    knots: &Knots,
+) -> Result<Vec<u64>> {
     let ranges = ValueRanges::new(knots);
     let [from, to] = knots.absorbing();
     visited(volume, octree, classes, |[least, most]| {
@@ -52,11 +65,12 @@ fn visited(
     octree: &Octree,
     classes: &[u8],
     matters: impl Fn([f32; 2]) -> bool + Sync,
-) -> Vec<u64> {
+) -> Result<Vec<u64>> {
     let cells = volume.dims().cells().map(|n| n as usize);
     let bricks = cells.map(|n| n.div_ceil(BRICK));
     let count: usize = bricks.iter().product();
-    let words: Vec<AtomicU64> = (0..count).map(|_| AtomicU64::new(0)).collect();
+    let words = (0..count).into_par_iter().map(|_| AtomicU64::new(0));
+    let words: Vec<AtomicU64> = memory::collected(words, "the cells that matter")?;
     let leaf = octree.leaf().edge() as usize;
     let leaves = octree.levels()[0];
     let [leaves_x, leaves_y, _] = leaves.size.map(|n| n as usize);
@@ -91,7 +105,8 @@ fn visited(
             }
         });
     });
-    words.into_iter().map(AtomicU64::into_inner).collect()
+    // In place: the two are laid out alike.
+    Ok(words.into_iter().map(AtomicU64::into_inner).collect())
 }
 
 /// The least and the greatest of each two voxels side by side along x, for the lines of voxels that the
@@ -187,8 +202,8 @@ mod tests {
             let volume = volume(dims);
             for edge in [4, 5, 8] {
                 let octree = Octree::build(&volume, Leaf::new(edge).unwrap(), &Silent).unwrap();
-                let classes = classify::by_iso(&octree, 0.5, 0.0);
-                let bits = crossed(&volume, &octree, &classes, 0.5, 0.0);
+                let classes = classify::by_iso(&octree, 0.5, 0.0).unwrap();
+                let bits = crossed(&volume, &octree, &classes, 0.5, 0.0).unwrap();
                 let crosses = |iso: f64| {
                     move |v: &[f64]| v.iter().any(|&v| v >= iso) && v.iter().any(|&v| v < iso)
                 };
@@ -219,8 +234,8 @@ mod tests {
         for dims in SIZES {
             let volume = volume(dims);
             let octree = Octree::build(&volume, Leaf::new(4).unwrap(), &Silent).unwrap();
-            let classes = classify::by_opacity(&octree, &knots, true, None);
-            let bits = absorbing(&volume, &octree, &classes, &knots);
+            let classes = classify::by_opacity(&octree, &knots, true, None).unwrap();
+            let bits = absorbing(&volume, &octree, &classes, &knots).unwrap();
             assert_eq!(differing(&volume, &bits, absorbs), 0, "{dims:?}");
             let above = |v: &[f64]| v.iter().any(|&v| v > 10.0);
             let others = differing(&volume, &bits, above);

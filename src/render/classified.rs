@@ -52,7 +52,7 @@ impl Criterion {
         }
     }
 
-    fn classes(&self, octree: &Octree) -> Vec<u8> {
+    fn classes(&self, octree: &Octree) -> Result<Vec<u8>> {
         match self {
             Self::Iso { iso, iso_error } => classify::by_iso(octree, *iso, *iso_error),
             Self::Floor { sign, floor } => classify::by_floor(octree, *sign, *floor),
@@ -63,7 +63,7 @@ impl Criterion {
     }
 
     /// The cells that matter, a bit each; none where nothing is led past them one by one.
-    fn cells(&self, volume: &Volume, octree: &Octree, classes: &[u8]) -> Vec<u64> {
+    fn cells(&self, volume: &Volume, octree: &Octree, classes: &[u8]) -> Result<Vec<u64>> {
         match self {
             Self::Iso { iso, iso_error } => {
                 cells::crossed(volume, octree, classes, *iso, *iso_error)
@@ -71,7 +71,7 @@ impl Criterion {
             Self::Opacity {
                 knots, limit: None, ..
             } => cells::absorbing(volume, octree, classes, knots),
-            Self::Floor { .. } | Self::Opacity { .. } => vec![0],
+            Self::Floor { .. } | Self::Opacity { .. } => Ok(vec![0]),
         }
     }
 }
@@ -125,14 +125,14 @@ impl Classified {
         criterion: Criterion,
     ) -> Result<Self> {
         let (traverse, filter) = (scene.sampling.traverse, scene.sampling.filter);
-        let mut classes = criterion.classes(octree);
+        let mut classes = criterion.classes(octree)?;
         let cells = if traverse == Traverse::Distance && filter == Filter::Linear {
-            criterion.cells(volume, octree, &classes)
+            criterion.cells(volume, octree, &classes)?
         } else {
             vec![0]
         };
         if traverse == Traverse::Distance {
-            add_reach(octree, &mut classes);
+            add_reach(octree, &mut classes)?;
         }
         Ok(Self {
             criterion,
@@ -164,7 +164,7 @@ impl RecentlyClassified {
     /// What holds for the scene, and whether it had to be found.
     ///
     /// # Errors
-    /// The device has no room.
+    /// The host or the device has no room.
     pub fn of(
         &mut self,
         device: &Device,

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::error::Result;
+use crate::memory;
 use crate::octree::Octree;
 
 use super::homogeneity::Limit;
@@ -25,7 +27,10 @@ pub enum Class {
 /// Classes of all nodes against an iso value in stored units; inside is Φ ≥ iso. Where the value
 /// that was asked for lies `iso_error` beside it, a node that reaches down to it is visited: on which
 /// side of the other it lies is uncertain.
-pub fn by_iso(octree: &Octree, iso: f32, iso_error: f32) -> Vec<u8> {
+///
+/// # Errors
+/// Not enough memory.
+pub fn by_iso(octree: &Octree, iso: f32, iso_error: f32) -> Result<Vec<u8>> {
     classes(octree, |_, [min, max]| {
         if max < iso {
             Class::Below
@@ -39,7 +44,10 @@ pub fn by_iso(octree: &Octree, iso: f32, iso_error: f32) -> Vec<u8> {
 
 /// Classes of all nodes against a floor in stored units, of sign · Φ: `Below` where nothing is above
 /// it.
-pub fn by_floor(octree: &Octree, sign: f32, floor: f32) -> Vec<u8> {
+///
+/// # Errors
+/// Not enough memory.
+pub fn by_floor(octree: &Octree, sign: f32, floor: f32) -> Result<Vec<u8>> {
     classes(octree, |_, [min, max]| {
         if f32::max(sign * min, sign * max) <= floor {
             Class::Below
@@ -51,7 +59,15 @@ pub fn by_floor(octree: &Octree, sign: f32, floor: f32) -> Vec<u8> {
 
 /// Classes of all nodes under a transfer function: `Below` where every value of the node's range
 /// is fully transparent and `skip` allows it; `Homogeneous` for leaves within `limit`.
-pub fn by_opacity(octree: &Octree, knots: &Knots, skip: bool, limit: Option<Limit>) -> Vec<u8> {
+///
+/// # Errors
+/// Not enough memory.
+pub fn by_opacity(
+    octree: &Octree,
+    knots: &Knots,
+    skip: bool,
+    limit: Option<Limit>,
+) -> Result<Vec<u8>> {
     let ranges = ValueRanges::new(knots);
     let leaves = octree.levels()[0].nodes();
     classes(octree, |node, [min, max]| {
@@ -65,11 +81,11 @@ pub fn by_opacity(octree: &Octree, knots: &Knots, skip: bool, limit: Option<Limi
     })
 }
 
-fn classes(octree: &Octree, class: impl Fn(usize, [f32; 2]) -> Class + Sync) -> Vec<u8> {
-    octree
-        .ranges()
-        .par_iter()
-        .enumerate()
-        .map(|(node, &range)| class(node, range) as u8)
-        .collect()
+fn classes(
+    octree: &Octree,
+    class: impl Fn(usize, [f32; 2]) -> Class + Sync + Send,
+) -> Result<Vec<u8>> {
+    let nodes = octree.ranges().par_iter().enumerate();
+    let classes = nodes.map(|(node, &range)| class(node, range) as u8);
+    memory::collected(classes, "the octree's classes")
 }

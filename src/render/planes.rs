@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::frame::{Certificate, Frame, Kind, Wanted};
 use crate::gpu::{Buffer, Device, DeviceKind, Element};
+use crate::memory;
 use crate::volume::Rescale;
 
 use super::passes::Counters;
@@ -135,7 +136,11 @@ impl ReadBack<'_> {
         Ok(match (wanted, plane) {
             (false, _) => None,
             (true, Some(plane)) => Some(plane.download(self.device)?),
-            (true, None) => Some(vec![nothing; self.size.pixels()]),
+            (true, None) => Some(memory::filled(
+                self.size.pixels(),
+                nothing,
+                "a plane of the picture",
+            )?),
         })
     }
 }

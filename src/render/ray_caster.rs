@@ -98,8 +98,8 @@ impl<'a> RayCaster<'a> {
             .collect();
         let grid = volume_grid(volume, levels.len() as u32);
         let levels = Buffer::upload(device, "octree's levels", &levels)?;
-        let classes = classify::by_iso(octree, iso, 0.0);
-        let cells = cells::crossed(volume, octree, &classes, iso, 0.0);
+        let classes = classify::by_iso(octree, iso, 0.0)?;
+        let cells = cells::crossed(volume, octree, &classes, iso, 0.0)?;
         let classes = Buffer::upload(device, "octree's classes", &classes)?;
         let cells = Buffer::upload(device, "crossed cells", &cells)?;
         let mut hit = Buffer::<f32>::new(device, "hits", rays.len())?;

@@ -1,6 +1,8 @@
 //! How far around each finest node nothing else begins: a Chebyshev distance map over the leaves
 //! (Deakin and Knackstedt 2019), kept in the upper bits of their classes.
 
+use crate::error::Result;
+use crate::memory;
 use crate::octree::{Level, Octree};
 
 use super::classify::Class;
@@ -15,15 +17,20 @@ pub const REACH_MOST: u32 = (1 << (8 - CLASS_BITS)) - 1;
 ///
 /// A leaf below the iso value never borders on one above it: their ranges share the voxels between
 /// them. So the distance to the nearest leaf that cannot be leapt over bounds both.
-pub fn add_reach(octree: &Octree, classes: &mut [u8]) {
+///
+/// # Errors
+/// Not enough memory.
+pub fn add_reach(octree: &Octree, classes: &mut [u8]) -> Result<()> {
     let leaves = octree.levels()[0];
     let leap = |class: u8| class == Class::Below as u8 || class == Class::Above as u8;
     let own = &mut classes[..leaves.nodes()];
     // Of the leaves that can be leapt over, peeled layer by layer, every layer that is left is one
     // more of reach.
-    let mut left: Vec<u8> = own.iter().map(|&class| u8::from(leap(class))).collect();
+    let mut left: Vec<u8> = memory::room(own.len(), "the leaves' reach")?;
+    left.extend(own.iter().map(|&class| u8::from(leap(class))));
+    let mut before = memory::filled(own.len(), 0, "the leaves' reach")?;
     for _ in 0..REACH_MOST {
-        peel(leaves, &mut left);
+        peel(leaves, &mut left, &mut before);
         if left.iter().all(|&leaf| leaf == 0) {
             break;
         }
@@ -31,14 +38,16 @@ pub fn add_reach(octree: &Octree, classes: &mut [u8]) {
             *byte += leaf << CLASS_BITS;
         }
     }
+    Ok(())
 }
 
-/// Keeps a leaf (1) only where all its neighbours are there; what is outside the volume is.
-fn peel(leaves: Level, left: &mut [u8]) {
+/// Keeps a leaf (1) only where all its neighbours are there; what is outside the volume is. `before` is as
+/// long as `left`, whatever is in it.
+fn peel(leaves: Level, left: &mut [u8], before: &mut [u8]) {
     let [nx, ny, _] = leaves.size.map(|n| n as usize);
     // Along x, within rows; along y, rows of a slice; along z, slices.
     for (run, stride) in [(nx, 1), (nx * ny, nx), (left.len(), nx * ny)] {
-        let before = left.to_vec();
+        before.copy_from_slice(left);
         for (left, before) in left.chunks_exact_mut(run).zip(before.chunks_exact(run)) {
             let neighbours = |left: &mut [u8], other: &[u8]| {
                 for (leaf, &neighbour) in left.iter_mut().zip(other) {
@@ -75,7 +84,7 @@ mod tests {
         let all: usize = octree.levels().iter().map(Level::nodes).sum();
         let mut classes: Vec<u8> = (0..all).map(|i| class(i) as u8).collect();
         let before = classes.clone();
-        add_reach(&octree, &mut classes);
+        add_reach(&octree, &mut classes).unwrap();
         assert_eq!(classes[leaves.nodes()..], before[leaves.nodes()..]);
         let [nx, ny, _] = leaves.size.map(|n| n as usize);
         let place = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];

@@ -11,6 +11,7 @@ use super::toml_error::located;
 use super::{Knot, Rgb, TransferFunction};
 use crate::error::{Error, Result};
 use crate::extent::Range;
+use crate::input;
 
 /// A transfer function as it is written down: `points = [[value, r, g, b, opacity], …]`,
 /// ascending in value; r, g, b sRGB-encoded, they and the opacity in 0..1.
@@ -67,10 +68,9 @@ impl TransferFile {
                 .hint("name a preset (cta, mra, 3dra) or a TOML file"));
         }
         let path = Path::new(name);
-        let text = std::fs::read_to_string(path).map_err(|cause| {
+        let text = input::text(path, "read the transfer function").map_err(|error| {
             let presets: Vec<&str> = Self::presets().collect();
-            Error::reading(path, "read the transfer function", &cause)
-                .hint(format!("the presets are {}", presets.join(", ")))
+            error.hint(format!("the presets are {}", presets.join(", ")))
         })?;
         Self::parse(&text, &path.display().to_string())
     }

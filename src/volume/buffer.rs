@@ -5,11 +5,12 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use bytemuck::Pod;
-use memmap2::Mmap;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
+use crate::memory;
+use crate::volume::MappedFile;
 
 /// A voxel type which the device reads as it is.
 pub trait Voxel: Pod + Send + Sync + PartialOrd + Into<f64> {
@@ -73,7 +74,7 @@ pub enum VoxelBuffer<T> {
 
 /// Voxels in a mapped file: aligned, native-endian, checked to lie inside.
 pub struct MappedVoxels {
-    map: Arc<Mmap>,
+    map: Arc<MappedFile>,
     offset: usize,
     bytes: usize,
 }
@@ -84,7 +85,7 @@ impl<T: Voxel> VoxelBuffer<T> {
     ///
     /// # Errors
     /// The file ends before the last voxel.
-    pub fn mapped(map: &Arc<Mmap>, offset: usize, len: usize) -> Result<Option<Self>> {
+    pub fn mapped(map: &Arc<MappedFile>, offset: usize, len: usize) -> Result<Option<Self>> {
         let bytes = len
             .checked_mul(size_of::<T>())
             .filter(|&bytes| offset.checked_add(bytes).is_some_and(|end| end <= map.len()))
@@ -234,16 +235,28 @@ impl Voxels {
         ((min <= max).then_some(Range { min, max }), bad)
     }
 
-    /// Applies `f` to every voxel of an f32 volume; other types have nothing to settle.
-    pub(super) fn map_f32(&mut self, f: impl Fn(f32) -> f32 + Sync) {
-        if let Self::F32(buffer) = self {
-            let mapped = buffer.par_iter().map(|&v| f(v)).collect();
-            *buffer = VoxelBuffer::Owned(mapped);
+    /// Applies `f` to every voxel of an f32 volume, where they lie if they may be written; other types
+    /// have nothing to settle.
+    ///
+    /// # Errors
+    /// Not enough memory for a copy of mapped voxels.
+    pub(super) fn map_f32(&mut self, f: impl Fn(f32) -> f32 + Sync + Send) -> Result<()> {
+        match self {
+            Self::F32(VoxelBuffer::Owned(voxels)) => voxels.par_iter_mut().for_each(|v| *v = f(*v)),
+            Self::F32(VoxelBuffer::Mapped(_)) => {
+                *self = self.each_as_f32(|v| f(v as f32))?.into();
+            }
+            _ => {}
         }
+        Ok(())
     }
 
     /// Every voxel through `f`, in order.
-    pub(super) fn to_f64_with<U: Send>(&self, f: impl Fn(f64) -> U + Sync) -> Vec<U> {
-        with_voxels!(self, slice => slice.par_iter().map(|&v| f(v.into())).collect())
+    ///
+    /// # Errors
+    /// Not enough memory.
+    pub(super) fn each_as_f32(&self, f: impl Fn(f64) -> f32 + Sync + Send) -> Result<Vec<f32>> {
+        let what = format_args!("{} voxels of f32", self.len());
+        with_voxels!(self, slice => memory::collected(slice.par_iter().map(|&v| f(v.into())), what))
     }
 }

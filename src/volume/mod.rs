@@ -6,19 +6,23 @@ mod buffer;
 mod content;
 mod geometry;
 mod histogram;
+mod mapped;
 mod phantom;
 mod read;
+mod shortened;
 mod smooth;
 mod write_nrrd;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
 pub use geometry::Geometry;
 pub use histogram::{Histogram, suggested_iso};
+pub use mapped::MappedFile;
 pub use phantom::{
     HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
     VesselTree, orientation_of, phantom,
 };
 pub use read::{RawLayout, RawSize, RawType, ReadOptions, files_of, read};
+pub use shortened::end_when_shortened;
 pub use smooth::smooth;
 pub use write_nrrd::write_nrrd;
 
@@ -108,9 +112,9 @@ impl Volume {
             notes: Vec::new(),
         };
         volume.settle_non_finite(non_finite)?;
-        volume.settle_falling_slope();
-        volume.settle_exponent();
-        volume.settle_offset();
+        volume.settle_falling_slope()?;
+        volume.settle_exponent()?;
+        volume.settle_offset()?;
         let range = volume.range();
         let largest = range.min.abs().max(range.max.abs());
         if largest > f64::from(f32::MAX) {
@@ -149,7 +153,7 @@ impl Volume {
             range.max
         };
         self.voxels
-            .map_f32(|v| if v.is_finite() { v } else { stand_in as f32 });
+            .map_f32(|v| if v.is_finite() { v } else { stand_in as f32 })?;
         self.notes.push(format!(
             "{bad} of {} voxels are NaN or infinite: read as {}, the smallest finite value",
             self.dims.voxels(),
@@ -160,11 +164,11 @@ impl Volume {
 
     /// A negative slope would turn maxima into minima: such voxels are kept negated, which is exact
     /// in single precision, with the slope's magnitude.
-    fn settle_falling_slope(&mut self) {
+    fn settle_falling_slope(&mut self) -> Result<()> {
         if self.rescale.slope > 0.0 {
-            return;
+            return Ok(());
         }
-        self.voxels = Voxels::F32(VoxelBuffer::Owned(self.voxels.to_f64_with(|v| -v as f32)));
+        self.voxels = self.voxels.each_as_f32(|v| -v as f32)?.into();
         self.rescale.slope = -self.rescale.slope;
         self.stored_range = Range {
             min: -self.stored_range.max,
@@ -172,42 +176,45 @@ impl Volume {
         };
         self.notes
             .push("the calibration slope is negative: the voxels are kept negated, as f32".into());
+        Ok(())
     }
 
     /// Floats of extreme magnitude are scaled by a power of two (exact but for denormals), so that
     /// products of two differences neither overflow nor vanish in single precision.
-    fn settle_exponent(&mut self) {
+    fn settle_exponent(&mut self) -> Result<()> {
         if !matches!(self.voxels, Voxels::F32(_)) {
-            return;
+            return Ok(());
         }
         let largest = self.stored_range.min.abs().max(self.stored_range.max.abs());
         if largest == 0.0 || (-40.0..40.0).contains(&largest.log2()) {
-            return;
+            return Ok(());
         }
         let shift = largest.log2().floor();
         let down = (-shift).exp2();
-        self.voxels.map_f32(|v| (f64::from(v) * down) as f32);
+        self.voxels.map_f32(|v| (f64::from(v) * down) as f32)?;
         self.rescale.slope *= shift.exp2();
         self.stored_range = Range {
             min: self.stored_range.min * down,
             max: self.stored_range.max * down,
         };
+        Ok(())
     }
 
     /// Floats far from zero compared with their range are counted from their minimum (exact, after
     /// Sterbenz 1974), so that single precision spends its digits on their differences.
-    fn settle_offset(&mut self) {
+    fn settle_offset(&mut self) -> Result<()> {
         let Range { min, max } = self.stored_range;
         let near_each_other = min > 0.0 && max <= 2.0 * min || max < 0.0 && min >= 2.0 * max;
         if !matches!(self.voxels, Voxels::F32(_)) || !near_each_other || min == max {
-            return;
+            return Ok(());
         }
-        self.voxels.map_f32(|v| (f64::from(v) - min) as f32);
+        self.voxels.map_f32(|v| (f64::from(v) - min) as f32)?;
         self.rescale.intercept += self.rescale.slope * min;
         self.stored_range = Range {
             min: 0.0,
             max: max - min,
         };
+        Ok(())
     }
 
     /// The same volume with a sentence for the user added (say, about digits lost on reading).

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{NonFinite, Volume, Voxel};
 use crate::error::{Error, Result};
 use crate::extent::Dims;
+use crate::memory;
 use crate::progress::Progress;
 use crate::with_voxels;
 
@@ -34,11 +35,8 @@ pub fn smooth(volume: &Volume, sigma_mm: f64, progress: &dyn Progress) -> Result
             sigma_voxels.max_element()
         )));
     }
-    let mut smoothed: Vec<f32> = Vec::new();
-    smoothed
-        .try_reserve_exact(dims.voxels() as usize)
-        .map_err(|_| Error::resource(format!("not enough memory to smooth {dims} voxels")))?;
-    smoothed.resize(dims.voxels() as usize, 0.0);
+    let what = format!("the smoothing of {dims} voxels");
+    let mut smoothed: Vec<f32> = memory::filled(dims.voxels() as usize, 0.0, &what)?;
 
     let [nx, ny, nz] = dims.usize();
     let kernels = [
@@ -51,13 +49,15 @@ pub fn smooth(volume: &Volume, sigma_mm: f64, progress: &dyn Progress) -> Result
     with_voxels!(volume.voxels(), source => smoothed
     .par_chunks_mut(nx * ny)
     .enumerate()
-    .for_each_init(
-        || vec![0.0; nx * ny.max(3)],
+    .try_for_each_init(
+        || memory::filled(nx * ny.max(3), 0.0, &what),
         |scratch, (k, slice)| {
+            let scratch = scratch.as_mut().map_err(|short| short.clone())?;
             smooth_slice(source, dims, k, &kernels, scratch, slice);
             progress.advance(1);
+            Ok(())
         },
-    ));
+    ))?;
     progress.end();
 
     let result = Volume::new(

@@ -104,9 +104,6 @@ fn physical_voxels(volume: &Volume) -> Result<Voxels> {
         )));
     }
     let rescale = volume.rescale();
-    Ok(Voxels::from(
-        volume
-            .voxels()
-            .to_f64_with(|stored| rescale.physical(stored) as f32),
-    ))
+    let physical = |stored| rescale.physical(stored) as f32;
+    Ok(volume.voxels().each_as_f32(physical)?.into())
 }

@@ -12,6 +12,7 @@ use super::{
     ToneOptions, TransferChoice, VolumeOptions,
 };
 use crate::error::{Error, Result};
+use crate::input;
 use crate::scene::toml_error::{line, located};
 
 /// A scene file's text and where it comes from. Groups of options are taken from it one by one:
@@ -40,8 +41,7 @@ impl SceneFile {
     /// # Errors
     /// An unreadable file.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|cause| Error::reading(path, "read the scene", &cause))?;
+        let text = input::text(path, "read the scene")?;
         Ok(Self {
             text,
             place: path.display().to_string(),

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::PhantomSpec;
 use super::noise::add_gaussian;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::extent::{Dims, Range};
+use crate::memory;
 use crate::volume::{Voxel, VoxelType, Voxels};
 
 /// A voxel type that real numbers are rounded to.
@@ -67,16 +68,8 @@ pub(super) use with_type;
 /// # Errors
 /// There is not enough memory.
 pub(super) fn uniform<T: Stored>(dims: Dims, value: T) -> Result<Vec<T>> {
-    let len = dims.voxels() as usize;
-    let mut voxels = Vec::new();
-    voxels.try_reserve_exact(len).map_err(|_| {
-        Error::resource(format!(
-            "not enough memory for a phantom of {dims} {} voxels",
-            T::TYPE
-        ))
-    })?;
-    voxels.resize(len, value);
-    Ok(voxels)
+    let what = format_args!("a phantom of {dims} {} voxels", T::TYPE);
+    memory::filled(dims.voxels() as usize, value, what)
 }
 
 /// Every voxel from the field's fraction at its index, slices in parallel.

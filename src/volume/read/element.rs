@@ -6,6 +6,7 @@ use std::io::{self, Read};
 use half::f16;
 
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::progress::Progress;
 use crate::volume::{Voxel, VoxelType, Voxels};
 
@@ -157,9 +158,8 @@ impl Growth {
             self.count
                 .min(voxels.len().saturating_mul(2).max(Self::FIRST))
         };
-        voxels
-            .try_reserve_exact(target - voxels.len())
-            .map_err(|_| Error::resource(format!("not enough memory for {} voxels", self.count)))
+        let what = format_args!("{} voxels", self.count);
+        memory::make_room(voxels, target - voxels.len(), what)
     }
 }
 

@@ -10,6 +10,9 @@ use crate::error::{Error, Result};
 /// The most files of one volume.
 const MOST_FILES: u64 = 1 << 16;
 
+/// The longest that the names of numbered files are, all together, in bytes.
+const LONGEST_NAMES: usize = 1 << 23;
+
 /// Where a header says its voxels are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum DataFiles {
@@ -44,11 +47,18 @@ pub(super) fn numbered(text: &str) -> Result<Option<Vec<String>>> {
     if count > i128::from(MOST_FILES) {
         return Err(wrong("too many files"));
     }
-    (0..count)
-        .map(|k| formatted(pattern, i128::from(first) + k * i128::from(step)))
-        .collect::<Option<Vec<String>>>()
-        .map(Some)
-        .ok_or_else(|| wrong("a number's place is written %d or, with leading zeros, %03d"))
+    let mut names = Vec::new();
+    let mut bytes = 0;
+    for k in 0..count {
+        let name = formatted(pattern, i128::from(first) + k * i128::from(step))
+            .ok_or_else(|| wrong("a number's place is written %d or, with leading zeros, %03d"))?;
+        bytes += name.len();
+        if bytes > LONGEST_NAMES {
+            return Err(wrong("their names are too long"));
+        }
+        names.push(name);
+    }
+    Ok(Some(names))
 }
 
 /// C's printf with one integer: `%d`, `%i`, `%u`, each with a width, `%%`.
@@ -139,8 +149,16 @@ impl Joined {
         };
         let payload = (self.open)(&path)
             .map_err(|error| io::Error::other(error.at(path.display()).to_string()))?;
+        let (reader, at_most) = payload.into_reader();
+        if at_most < self.share {
+            return Err(io::Error::other(format!(
+                "{}: cannot hold more than {at_most} bytes of its share of {}",
+                path.display(),
+                self.share
+            )));
+        }
         Ok(Some(Part {
-            reader: payload.into_reader().0,
+            reader,
             path,
             left: self.share,
         }))
@@ -196,5 +214,10 @@ mod tests {
         ] {
             assert!(numbered(bad).is_err(), "{bad}");
         }
+        // Few bytes that would be gigabytes of names: by a long name, and by a widened number.
+        let many = |pattern: &str| numbered(&format!("{pattern} 1 65536 1"));
+        assert!(many(&format!("{}%d", "s".repeat(1000))).is_err());
+        assert!(many(&"%20d".repeat(100)).is_err());
+        assert_eq!(many("slice%d").unwrap().unwrap().len(), 1 << 16);
     }
 }

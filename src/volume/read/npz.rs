@@ -21,6 +21,9 @@ const LIKELY_NAMES: [&str; 8] = [
 /// The most arrays looked at.
 const MOST_ARRAYS: usize = 4096;
 
+/// The most arrays named where none will do.
+const MOST_NAMED: usize = 10;
+
 pub(super) fn is_zip(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06")
 }
@@ -64,7 +67,9 @@ pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
     for entry in &entries {
         // Decoders are large: an array's is dropped again before the next one's is made.
         let (header, _) = entry.open()?;
-        shapes.push(format!("{} {:?}", entry.name, header.shape));
+        if shapes.len() < MOST_NAMED {
+            shapes.push(format!("{} {:?}", entry.name, header.shape));
+        }
         let rank = LIKELY_NAMES
             .iter()
             .position(|name| entry.name.eq_ignore_ascii_case(name))
@@ -97,6 +102,7 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
     let damaged = |cause| Error::input(format!("the zip archive is damaged: {cause}"));
     let mut archive = ZipArchive::new(Cursor::new(file.as_slice())).map_err(damaged)?;
     let mut entries = Vec::new();
+    let mut places = Vec::new();
     for index in 0..archive.len().min(MOST_ARRAYS) {
         let member = archive.by_index_raw(index).map_err(damaged)?;
         let name = String::from_utf8_lossy(member.name_raw()).into_owned();
@@ -111,6 +117,7 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
             return refused("nowhere in the archive");
         };
         let bytes = file.clone().after(start)?.first(member.compressed_size());
+        places.push((member.header_start(), start.saturating_add(bytes.len())));
         let is_deflated = match member.compression() {
             CompressionMethod::Stored => false,
             CompressionMethod::Deflated => true,
@@ -122,6 +129,11 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
             is_deflated,
             checksum: member.crc32(),
         });
+    }
+    // No archiver writes bytes that are two members' at once: each would be decoded anew.
+    places.sort_unstable();
+    if places.windows(2).any(|pair| pair[1].0 < pair[0].1) {
+        return Err(Error::input("arrays of the zip archive overlap"));
     }
     Ok(entries)
 }

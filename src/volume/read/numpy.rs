@@ -12,13 +12,20 @@ use super::array::{Array, refuse_components};
 use super::element::{Element, Endian, Scalar};
 use super::frames::Frames;
 use super::payload::Payload;
-use super::source::{LONGEST_HEADER, Source};
+use super::source::Source;
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::volume::{Geometry, Rescale, Volume, Voxel, Voxels};
+use crate::memory;
+use crate::volume::{Geometry, Rescale, Volume, Voxel};
 use crate::with_voxels;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// The longest header: NumPy itself reads no longer one unless told to.
+const LONGEST_HEADER: usize = 10_000;
+
+/// The most axes: NumPy's own limit.
+const MOST_AXES: usize = 64;
 
 pub(super) fn is_npy(head: &[u8]) -> bool {
     head.starts_with(MAGIC)
@@ -79,7 +86,7 @@ impl Header {
         };
         if length > LONGEST_HEADER {
             return Err(Error::input(format!(
-                "the .npy header announces {length} bytes for itself"
+                "the .npy header announces {length} bytes for itself: {LONGEST_HEADER} are the most"
             )));
         }
         let mut text = vec![0; length];
@@ -109,7 +116,7 @@ impl Header {
             rest if rest.starts_with("False") => false,
             _ => return Err(Error::input("the .npy header's order is unclear")),
         };
-        let shape = value("shape")?
+        let shape: Vec<u64> = value("shape")?
             .strip_prefix('(')
             .and_then(|rest| rest.split_once(')'))
             .and_then(|(sizes, _)| {
@@ -117,10 +124,16 @@ impl Header {
                     .split(',')
                     .map(str::trim)
                     .filter(|size| !size.is_empty())
+                    .take(MOST_AXES + 1)
                     .map(|size| size.trim_end_matches('L').parse().ok())
                     .collect()
             })
             .ok_or_else(|| Error::input("the .npy header's shape cannot be read"))?;
+        if shape.len() > MOST_AXES {
+            return Err(Error::input(format!(
+                "the .npy header announces more than {MOST_AXES} axes"
+            )));
+        }
         Ok(Self {
             descr,
             fortran_order,
@@ -205,14 +218,18 @@ pub(super) fn read_array(
     let voxels = array.voxels(payload, request)?;
     let [nz, ny, nx] = stored_dims.array().map(u64::from);
     array.dims = Dims::new([nx, ny, nz])?;
-    let turned = with_voxels!(&voxels, slice => Voxels::from(x_fastest(slice, array.dims)));
+    let turned = with_voxels!(&voxels, slice => x_fastest(slice, array.dims)?.into());
     array.into_volume(turned, request.options)
 }
 
 /// Voxels that lie with z fastest, turned.
-fn x_fastest<T: Voxel>(z_fastest: &[T], dims: Dims) -> Vec<T> {
+///
+/// # Errors
+/// Not enough memory.
+fn x_fastest<T: Voxel>(z_fastest: &[T], dims: Dims) -> Result<Vec<T>> {
     let [nx, ny, nz] = dims.usize();
-    let mut turned = vec![T::zeroed(); z_fastest.len()];
+    let what = format_args!("{dims} voxels, turned from Fortran's order");
+    let mut turned = memory::filled(z_fastest.len(), T::zeroed(), what)?;
     turned
         .par_chunks_mut(nx * ny)
         .enumerate()
@@ -223,7 +240,7 @@ fn x_fastest<T: Voxel>(z_fastest: &[T], dims: Dims) -> Vec<T> {
                 }
             }
         });
-    turned
+    Ok(turned)
 }
 
 #[cfg(test)]

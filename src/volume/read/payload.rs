@@ -5,27 +5,27 @@ use std::sync::Arc;
 
 use bzip2::bufread::MultiBzDecoder;
 use flate2::bufread::{GzDecoder, ZlibDecoder};
-use memmap2::Mmap;
 
 use super::element::Scalar;
 use super::text::TextNumbers;
 use crate::error::{Error, Result};
+use crate::volume::MappedFile;
 
 /// A part of a mapped file, read from its start.
 #[derive(Clone)]
 pub(super) struct MappedBytes {
-    map: Arc<Mmap>,
+    map: Arc<MappedFile>,
     start: usize,
     end: usize,
 }
 
 impl MappedBytes {
-    pub(super) fn whole(map: Arc<Mmap>) -> Self {
+    pub(super) fn whole(map: Arc<MappedFile>) -> Self {
         let end = map.len();
         Self { map, start: 0, end }
     }
 
-    pub(super) fn map(&self) -> &Arc<Mmap> {
+    pub(super) fn map(&self) -> &Arc<MappedFile> {
         &self.map
     }
 
@@ -93,6 +93,14 @@ pub(super) enum Payload {
 /// Deflate spends at least two bits on at most 258 bytes.
 const DEFLATE_RATIO: u64 = 258 * 8 / 2;
 
+/// The fewest bits of a bzip2 block: its marks and checksum (105), the bytes that occur (32), two code
+/// tables of three lengths (34 with their number and the selectors'), one symbol.
+const BZIP2_BLOCK_BITS: u64 = 105 + 32 + 34 + 1;
+
+/// The most bytes that come out of one: of the 900,000 that it holds at most every five may stand for
+/// 259.
+const BZIP2_BLOCK_BYTES: u64 = 900_000 / 5 * 259;
+
 impl Payload {
     fn stream(reader: impl Read + 'static, at_most: u64) -> Self {
         Self::Stream {
@@ -136,16 +144,22 @@ impl Payload {
         })
     }
 
+    /// Decoded by bzip2, streams one after the other as one.
     pub(super) fn bunzip2(self) -> Self {
-        Self::stream(MultiBzDecoder::new(self.into_reader().0), u64::MAX)
+        let (reader, length) = self.into_reader();
+        let blocks = length.saturating_mul(8) / BZIP2_BLOCK_BITS;
+        Self::stream(
+            MultiBzDecoder::new(reader),
+            blocks.saturating_mul(BZIP2_BLOCK_BYTES),
+        )
     }
 
-    /// Written numbers as native-endian bytes.
+    /// Written numbers as native-endian bytes: each of a digit and a separator at least.
     pub(super) fn numbers(self, scalar: Scalar) -> Self {
         let (reader, length) = self.into_reader();
         Self::stream(
             TextNumbers::new(reader, scalar),
-            length.saturating_mul(scalar.bytes()),
+            length.div_ceil(2).saturating_mul(scalar.bytes()),
         )
     }
 
@@ -160,6 +174,11 @@ impl Payload {
                 mut reader,
                 at_most,
             } => {
+                if count > at_most {
+                    return Err(Error::input(format!(
+                        "the voxels should start {count} bytes in, but the data there cannot hold more than {at_most}"
+                    )));
+                }
                 let skipped =
                     io::copy(&mut (&mut reader).take(count), &mut io::sink()).map_err(|cause| {
                         Error::input(format!("the data before the voxels: {cause}"))

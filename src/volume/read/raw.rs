@@ -216,7 +216,7 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
 }
 
 /// The most bytes counted for a hint.
-const MOST_COUNTED: u64 = 1 << 31;
+const MOST_COUNTED: u64 = 1 << 28;
 
 /// What to say of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {

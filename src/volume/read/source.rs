@@ -5,10 +5,9 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-use memmap2::Mmap;
-
 use super::payload::{GZIP_MAGIC, GzipMembers, MappedBytes, Payload};
 use crate::error::{Error, Result};
+use crate::volume::MappedFile;
 
 /// The longest header: longer ones (of whatever format) are lies.
 pub(super) const LONGEST_HEADER: usize = 1 << 20;
@@ -82,7 +81,11 @@ pub(super) fn open_plain(path: &Path) -> Result<MappedBytes> {
     let failed = |cause: io::Error| match cause.kind() {
         io::ErrorKind::NotFound => Error::input("there is no such file"),
         io::ErrorKind::PermissionDenied => Error::input("reading it is not permitted"),
-        _ => Error::input(format!("cannot be read: {cause}")),
+        // What Error::reading says of a cause, without the name.
+        _ => {
+            let kind = Error::reading(path, "read", &cause).kind();
+            Error::new(kind, format!("cannot be read: {cause}"))
+        }
     };
     // Asked before opening: opening a pipe would wait for its writer.
     let metadata = fs::metadata(path).map_err(failed)?;
@@ -96,9 +99,7 @@ pub(super) fn open_plain(path: &Path) -> Result<MappedBytes> {
         return Err(Error::input("the file is empty"));
     }
     let file = File::open(path).map_err(failed)?;
-    // SAFETY: the map is only read. That nobody shortens or rewrites a volume file while it is
-    // being rendered is the price of not copying it, as for every program that maps files.
-    let map = unsafe { Mmap::map(&file) }.map_err(failed)?;
+    let map = MappedFile::new(&file, path).map_err(failed)?;
     Ok(MappedBytes::whole(Arc::new(map)))
 }
 

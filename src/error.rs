@@ -38,6 +38,15 @@ impl ErrorKind {
             Self::Stopped => 75,
         }
     }
+
+    /// The kind that leads to this exit code, if one does.
+    pub fn of_exit_code(code: i32) -> Option<Self> {
+        use ErrorKind::*;
+        let kinds = [Failed, Usage, NoDevice, Input, Resource, Stopped];
+        kinds
+            .into_iter()
+            .find(|kind| i32::from(kind.exit_code()) == code)
+    }
 }
 
 /// One clear sentence about what is wrong and where, with a hint where we know a cure.

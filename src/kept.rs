@@ -2,10 +2,13 @@
 //! depends on, so that nothing stale is ever taken for the thing itself.
 
 use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::error::{Error, Result};
+use crate::output::write_atomically;
 
 /// Files that nobody asked for in so long are removed.
 const KEPT: Duration = Duration::from_secs(30 * 24 * 3600);
@@ -51,6 +54,70 @@ impl Kept {
     }
 }
 
+/// Opens a kept file for reading. Only a regular file is one: a pipe, a device or a folder in its place
+/// is never waited for.
+///
+/// # Errors
+/// There is no such file, or it cannot be read.
+pub fn open(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(libc::O_NONBLOCK);
+    }
+    let file = options.open(path)?;
+    if file.metadata()?.is_file() {
+        Ok(file)
+    } else {
+        Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            "this is no regular file",
+        ))
+    }
+}
+
+/// The bytes of a kept file, as [`open`] opens it; of a longer one the first `most`.
+///
+/// # Errors
+/// Those of [`open`]; the disk failed.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Writes a kept file as [`write_atomically`] does, in place of whatever has its name; a folder stays, so
+/// that nothing is kept there.
+///
+/// # Errors
+/// Those of [`write_atomically`].
+pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<()> {
+    // A pipe or a device would receive the bytes, and might never take them.
+    let there = fs::symlink_metadata(path);
+    if there.is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        fs::remove_file(path).map_err(|cause| Error::writing(path, "replace", &cause))?;
+    }
+    write_atomically(path, fill)
+}
+
+/// That files can be made in a folder that is there.
+///
+/// # Errors
+/// They cannot, by its permissions or its file system's.
+pub fn check_takes_files(folder: &Path) -> Result<()> {
+    #[cfg(unix)]
+    {
+        use rustix::fs::{Access, access};
+        access(folder, Access::WRITE_OK | Access::EXEC_OK)
+            .map_err(|cause| Error::writing(folder, "make files there", &cause.into()))?;
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+    Ok(())
+}
+
 /// Says of a kept file that it was asked for. Where that cannot be said it is made again one day.
 pub fn asked_for(path: &Path) {
     let file = std::fs::File::options().append(true).open(path);
@@ -67,6 +134,8 @@ pub fn users_folder() -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write as _;
+
     use super::*;
 
     #[test]
@@ -86,6 +155,38 @@ mod tests {
         Kept::in_folder(folder.path(), "thing").unwrap();
         let there = [&old, &asked, &young, &others].map(|path| path.exists());
         assert_eq!(there, [false, true, true, true]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_not_waited_for_and_is_replaced() {
+        use std::os::unix::net::UnixListener;
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("file"), "x").unwrap();
+        rustix::fs::mkfifoat(rustix::fs::CWD, at("fifo"), rustix::fs::Mode::RWXU).unwrap();
+        let _listening = UnixListener::bind(at("socket")).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", at("device")).unwrap();
+        std::os::unix::fs::symlink("nothing", at("dangling")).unwrap();
+        fs::create_dir(at("folder")).unwrap();
+        for name in ["fifo", "socket", "device", "dangling", "folder"] {
+            assert!(read(&at(name), 9).is_err(), "{name}");
+        }
+        // The control.
+        assert_eq!(read(&at("file"), 9).unwrap(), b"x");
+
+        let put = |name: &str| {
+            write(&at(name), |out| {
+                out.write_all(b"y")
+                    .map_err(|cause| Error::writing(&at(name), "write", &cause))
+            })
+        };
+        for name in ["file", "fifo", "socket", "device", "dangling"] {
+            put(name).unwrap();
+            assert_eq!(read(&at(name), 9).unwrap(), b"y", "{name}");
+            assert!(fs::symlink_metadata(at(name)).unwrap().is_file(), "{name}");
+        }
+        assert!(put("folder").is_err() && at("folder").is_dir());
     }
 
     #[test]

@@ -9,6 +9,7 @@ pub mod batch;
 pub mod bench;
 pub mod cli;
 pub mod compare;
+pub mod crash;
 pub mod error;
 pub mod extent;
 pub mod frame;

@@ -9,6 +9,10 @@ static ALLOCATOR: Allocator = Allocator;
 
 fn main() -> ExitCode {
     // SAFETY: the program begins here, with one thread.
-    unsafe { angioray::gpu::loader::prepare_environment() };
+    let process = unsafe { angioray::gpu::process::begin() };
+    if let Some(built) = process.build_if_asked() {
+        return built;
+    }
+    angioray::crash::catch();
     angioray::cli::main()
 }

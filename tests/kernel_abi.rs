@@ -22,14 +22,9 @@ fn every_struct_has_the_same_layout_on_the_device() {
         lanes: Lanes::ONE,
         storage: Storage::Buffer,
     };
-    let pass = Pass::build(
-        &device,
-        "test",
-        "abi",
-        &variant.defines(),
-        vec![output::<u32>("layout")],
-    )
-    .unwrap();
+    let signature = vec![output::<u32>("layout")];
+    let pass = Pass::new("test", "abi", variant.defines(), signature);
+    let pass = pass.built(&device).unwrap();
     let host: Vec<u32> = struct_layouts()
         .into_iter()
         .flat_map(|(_, layout)| layout)
@@ -40,6 +35,7 @@ fn every_struct_has_the_same_layout_on_the_device() {
         .output(&mut layout)
         .run(ImageSize::new(1, 1).unwrap(), Some([1, 1]), &mut timings)
         .unwrap();
+    timings.finish(&device).unwrap();
     let on_device = layout.download(&device).unwrap();
     let mut rest = &on_device[..];
     for (name, host) in struct_layouts() {

@@ -4,12 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const GROUND: &[&str] = &[
-    "abrupt", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
+    "abrupt", "crash", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
 ];
 
 /// A module and the modules, beside the ground floor's, that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("abrupt", &[]),
+    ("crash", &[]),
     ("error", &[]),
     ("extent", &[]),
     ("input", &[]),

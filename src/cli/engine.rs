@@ -18,7 +18,9 @@ use crate::scene::options::plain::readable;
 use crate::volume::Volume;
 
 use super::load::{Source, ms_since};
+use super::progress::Bars;
 use super::stats::{DeviceStats, PassStats, Times};
+use super::terminal::note;
 
 group! {
     /// What renders, and how it is used.
@@ -146,12 +148,16 @@ impl Engine {
             }
             name => {
                 let choice = name.as_ref().map_or("", |DeviceName(name)| name);
-                let device = Box::new(Device::select(choice)?);
+                let device = Device::select(choice)?.heard_by(Bars::new());
+                device.notes().for_each(note);
                 let options = Options {
                     work_group: options.work_group.map(Into::into),
                     lanes: options.lanes,
                 };
-                Ok(Self::Device { device, options })
+                Ok(Self::Device {
+                    device: Box::new(device),
+                    options,
+                })
             }
         }
     }

@@ -3,15 +3,16 @@
 //! Drivers keep what they built too, but may need tenths of a second to find that nothing has changed:
 //! PoCL runs the whole preprocessor for it. A program's own binary is there in milliseconds.
 
+use std::fmt::Display;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use ocl::core::{self, Program, ProgramInfo, ProgramInfoResult};
 
-use crate::error::Result;
-use crate::kept::{self, Kept, asked_for};
-use crate::output::write_bytes;
+use crate::error::{Error, Result};
+use crate::kept::{self, Kept};
 
-use super::{DeviceInfo, Parameter};
+use super::{DeviceInfo, Parameter, process};
 
 /// Names the folder of built programs, or turns it off.
 const FOLDER: &str = "ANGIORAY_KERNEL_CACHE";
@@ -20,9 +21,16 @@ const OFF: &str = "off";
 /// Of the files of built programs.
 const EXTENSION: &str = "kernel";
 
+/// The longest that is read.
+const MOST_BYTES: u64 = 1 << 30;
+
 /// Where built programs are kept; nowhere where there is no place for them.
 #[derive(Debug)]
-pub struct Binaries(Option<Kept>);
+pub struct Binaries {
+    kept: Option<Kept>,
+    /// Why they are not, where nobody asked for that.
+    note: Option<String>,
+}
 
 impl Binaries {
     /// In the folder that the environment names, else in the user's cache folder.
@@ -31,20 +39,44 @@ impl Binaries {
     /// The folder that is named cannot be made.
     pub fn open() -> Result<Self> {
         match std::env::var_os(FOLDER) {
-            Some(word) if word == OFF => Ok(Self(None)),
-            Some(folder) => Kept::in_folder(Path::new(&folder), EXTENSION)
-                .map(|kept| Self(Some(kept)))
-                .map_err(|error| {
-                    error.hint(format!(
-                        "let {FOLDER} name another folder, or set it to 'off'"
-                    ))
-                }),
+            Some(word) if word == OFF || word.is_empty() => Ok(Self {
+                kept: None,
+                note: None,
+            }),
+            Some(folder) => Self::in_folder(Path::new(&folder)).map_err(|error| {
+                error.hint(format!(
+                    "let {FOLDER} name another folder, or set it to 'off'"
+                ))
+            }),
             None => {
-                let folder = kept::users_folder();
-                let kept = folder.and_then(|folder| Kept::in_folder(&folder, EXTENSION).ok());
-                Ok(Self(kept))
+                let Some(folder) = kept::users_folder() else {
+                    return Ok(Self::not_kept("there is no cache folder of this user"));
+                };
+                Ok(Self::in_folder(&folder).unwrap_or_else(Self::not_kept))
             }
         }
+    }
+
+    /// What is in the folder is used even where nothing can be added.
+    fn in_folder(folder: &Path) -> Result<Self> {
+        let kept = Kept::in_folder(folder, EXTENSION)?;
+        let note = kept::check_takes_files(folder).err().map(not_kept);
+        Ok(Self {
+            kept: Some(kept),
+            note,
+        })
+    }
+
+    fn not_kept(why: impl Display) -> Self {
+        Self {
+            kept: None,
+            note: Some(not_kept(why)),
+        }
+    }
+
+    /// Why built programs are not kept, where nobody asked for that.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
     }
 
     /// Where the program is kept that the device's compiler makes of `source` and `options`, and whose
@@ -56,7 +88,7 @@ impl Binaries {
         options: &str,
         signature: &[Parameter],
     ) -> Option<PathBuf> {
-        let kept = self.0.as_ref()?;
+        let kept = self.kept.as_ref()?;
         let mut hasher = blake3::Hasher::new();
         let DeviceInfo {
             name,
@@ -80,25 +112,50 @@ impl Binaries {
     }
 }
 
-/// The binary kept in `path`; nothing where there is none, or none that is whole.
-pub fn read(path: &Path) -> Option<Vec<u8>> {
-    let bytes = std::fs::read(path).ok()?;
-    let (digest, binary) = bytes.split_at_checked(blake3::OUT_LEN)?;
-    if blake3::hash(binary).as_bytes() != digest {
-        return None;
-    }
-    asked_for(path);
-    Some(binary.to_owned())
+/// The sentence of a [`Binaries::note`].
+fn not_kept(why: impl Display) -> String {
+    let folder = process::arranged().and_then(|arranged| arranged.folder().ok());
+    let built_in = folder.map_or(String::new(), |folder| {
+        format!(
+            ", and built in '{}', which is removed at the end",
+            folder.display()
+        )
+    });
+    format!("kernels are not kept from run to run ({why}){built_in}; {FOLDER} names another folder")
 }
 
-/// Keeps a built program in `path`, behind its digest. Where that cannot be done it is built again.
-pub fn write(path: &Path, program: &Program) {
+/// The binary in a file of [`packed`] bytes; nothing where there is none, or none that is whole.
+pub fn read(path: &Path) -> Option<Vec<u8>> {
+    let bytes = kept::read(path, MOST_BYTES).ok()?;
+    unpacked(&bytes).map(<[u8]>::to_owned)
+}
+
+/// The binary in [`packed`] bytes; nothing where they are not whole.
+pub fn unpacked(bytes: &[u8]) -> Option<&[u8]> {
+    let (digest, binary) = bytes.split_at_checked(blake3::OUT_LEN)?;
+    (blake3::hash(binary).as_bytes() == digest).then_some(binary)
+}
+
+/// The driver's binary of a built program; nothing where it gives none. Drivers that leave part of the
+/// building to the first launch, as PoCL does, do it now.
+pub fn of(program: &Program) -> Option<Vec<u8>> {
     let binaries = core::get_program_info(program, ProgramInfo::Binaries);
-    if let Ok(ProgramInfoResult::Binaries(binaries)) = binaries
-        && let [binary] = &binaries[..]
-        && !binary.is_empty()
-    {
-        let digest = blake3::hash(binary);
-        let _ = write_bytes(path, &[digest.as_bytes(), &binary[..]].concat());
-    }
+    let Ok(ProgramInfoResult::Binaries(binaries)) = binaries else {
+        return None;
+    };
+    let [binary] = &binaries[..] else { return None };
+    (!binary.is_empty()).then(|| binary.clone())
+}
+
+/// A binary behind its digest.
+pub fn packed(binary: &[u8]) -> Vec<u8> {
+    [blake3::hash(binary).as_bytes(), binary].concat()
+}
+
+/// Keeps a binary in `path`. Where that cannot be done it is built again.
+pub fn keep(path: &Path, binary: &[u8]) {
+    let _ = kept::write(path, |out| {
+        out.write_all(&packed(binary))
+            .map_err(|cause| Error::writing(path, "write", &cause))
+    });
 }

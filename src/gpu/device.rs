@@ -9,9 +9,12 @@ use ocl::core::{
     DeviceInfo as Query, DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
 };
 
+use crate::crash;
 use crate::error::{Error, Result};
+use crate::progress::{Progress, Silent};
 
 use super::binary::Binaries;
+use super::process::{self, Arranged};
 use super::{device_error, loader};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +61,8 @@ pub struct Device {
     queue: CommandQueue,
     binaries: Binaries,
     uploaded_bytes: AtomicU64,
+    built_kernels: AtomicU64,
+    listener: Box<dyn Progress + Send>,
 }
 
 impl Device {
@@ -105,7 +110,22 @@ impl Device {
             }
         };
         let (platform, device_id, info) = found.swap_remove(place);
+        crash::while_at_work(&format!("the device '{}' was at work", info.name));
         Self::open(platform, device_id, info)
+    }
+
+    /// From now on `listener` hears of kernels that are built: a stage of as many units as there are.
+    #[must_use]
+    pub fn heard_by(mut self, listener: impl Progress + Send + 'static) -> Self {
+        self.listener = Box::new(listener);
+        self
+    }
+
+    /// What the user may want to know of the folders in which kernels are built and kept.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let arranged = process::arranged().and_then(Arranged::note);
+        let kept = self.binaries.note().map(str::to_owned);
+        arranged.into_iter().chain(kept)
     }
 
     fn open(platform: PlatformId, device_id: DeviceId, info: DeviceInfo) -> Result<Self> {
@@ -122,6 +142,8 @@ impl Device {
             queue,
             binaries: Binaries::open()?,
             uploaded_bytes: AtomicU64::new(0),
+            built_kernels: AtomicU64::new(0),
+            listener: Box::new(Silent),
         })
     }
 
@@ -132,6 +154,19 @@ impl Device {
     /// Copied to the device since it was opened.
     pub fn uploaded_bytes(&self) -> u64 {
         self.uploaded_bytes.load(Ordering::Relaxed)
+    }
+
+    /// Built, not taken from where they are kept, since it was opened.
+    pub fn built_kernels(&self) -> u64 {
+        self.built_kernels.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn count_built(&self) {
+        self.built_kernels.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub(super) fn listener(&self) -> &dyn Progress {
+        &*self.listener
     }
 
     pub(super) fn count_upload(&self, bytes: usize) {
@@ -171,6 +206,7 @@ impl Device {
 /// Every usable device with its platform. Devices that cannot be asked are left out.
 fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
+    let folder = process::arranged().map(Arranged::folder);
     loader::open().map_err(|reason| {
         Error::no_device(format!("no OpenCL library is installed ({reason})")).hint(INSTALL)
     })?;
@@ -188,6 +224,12 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
                 found.push((platform, device, info));
             }
         }
+    }
+    if let (true, Some(Err(why))) = (found.is_empty(), folder) {
+        return Err(Error::resource(format!(
+            "no OpenCL device was found, and there is no folder in which a driver could build ({why})"
+        ))
+        .hint("let TMPDIR name a folder that takes files"));
     }
     if found.is_empty() {
         return Err(Error::no_device("no OpenCL device was found").hint(INSTALL));

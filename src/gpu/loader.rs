@@ -12,20 +12,6 @@ pub fn open() -> Result<(), String> {
 #[cfg(not(target_os = "macos"))]
 pub use forward::open;
 
-/// What drivers are asked for through the environment, unless it says something already: that PoCL builds
-/// one kernel for work-groups of all sizes. Its kernels of one size each are no faster here, and its
-/// binaries hold the one for all sizes only.
-///
-/// # Safety
-/// No other thread may run: they may be reading the environment.
-pub unsafe fn prepare_environment() {
-    const NAME: &str = "POCL_WORK_GROUP_SPECIALIZATION";
-    if std::env::var_os(NAME).is_none() {
-        // SAFETY: as this function demands.
-        unsafe { std::env::set_var(NAME, "0") };
-    }
-}
-
 #[cfg(not(target_os = "macos"))]
 mod forward {
     use std::ffi::{c_char, c_uchar, c_void};

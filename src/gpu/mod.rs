@@ -1,13 +1,16 @@
 //! The OpenCL device, memory, kernel sources, programs, typed passes and timings. Knows no volumes.
 
 mod binary;
+mod builder;
 mod device;
 mod element;
 mod image;
-pub mod loader;
+mod loader;
 mod memory;
 mod pass;
+pub mod process;
 mod program;
+mod scratch;
 mod signature;
 mod source;
 mod timing;

@@ -1,11 +1,19 @@
-//! Building a kernel from its source and its constants.
+//! Building kernels from their sources and constants.
 
 use std::ffi::CString;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread::available_parallelism;
 
 use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 
+use crate::crash;
 use crate::error::{Error, Result};
+use crate::kept::asked_for;
 
+use super::builder::{self, Answer, Builders, Request};
+use super::process::{self, Arranged};
 use super::signature::{self, Parameter};
 use super::{Device, binary, device_error, source};
 
@@ -36,46 +44,223 @@ impl Defines {
     }
 }
 
-/// Builds `kernels/<path>` and takes its kernel `name`, which has the arguments of `signature`; or takes it
-/// from where built programs are kept.
+/// A kernel that is wanted: `name` of `kernels/<path>`, which has the arguments of `signature`.
+pub(super) struct Order<'a> {
+    pub path: String,
+    pub name: &'static str,
+    pub defines: &'a Defines,
+    pub signature: &'a [Parameter],
+}
+
+/// Builds kernels, in the order given, or takes them from where built programs are kept. The device's
+/// listener hears of those that are built.
 ///
 /// # Errors
-/// The source does not build on this device, then the message holds the compiler's first lines; or its
-/// arguments are others.
-pub(super) fn build(
+/// A source does not build on this device, then the message holds the compiler's first lines; or its
+/// arguments are others; the driver failed; it is time to stop.
+pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
+    let plans = orders.iter().map(|order| Plan::of(device, order));
+    let plans = plans.collect::<Result<Vec<Plan>>>()?;
+    let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.kept(device)).collect();
+    let missing: Vec<usize> = (0..plans.len()).filter(|&i| kernels[i].is_none()).collect();
+    if !missing.is_empty() {
+        let progress = device.listener();
+        progress.begin("building kernels", missing.len() as u64);
+        let take = |i: usize, kernel| {
+            kernels[i] = Some(kernel);
+            device.count_built();
+            progress.advance(1);
+        };
+        let built = match process::arranged() {
+            Some(arranged) => build_elsewhere(arranged, device, &plans, &missing, take),
+            None => build_here(device, &plans, &missing, take),
+        };
+        progress.end();
+        built?;
+    }
+    Ok(kernels.into_iter().flatten().collect())
+}
+
+/// In this process, one after another.
+fn build_here(
     device: &Device,
-    path: &str,
-    name: &str,
-    defines: &Defines,
-    signature: &[Parameter],
-) -> Result<Kernel> {
-    let source = source::flatten(path)?;
-    // Drivers print their compiler's warnings, which are the tests' business, beside the program's own words.
-    let options = format!("{} -w", defines.options());
-    // A kept program is one whose arguments were compared with this signature: it does not tell them.
-    let kept = device
-        .binaries()
-        .path(device.info(), &source, &options, signature);
-    let options =
-        CString::new(options).map_err(|_| Error::failed("a kernel constant holds a NUL byte"))?;
-    if let Some(kernel) = kept
-        .as_deref()
-        .and_then(binary::read)
-        .and_then(|binary| from_binary(device, &binary, name, &options))
-    {
-        return Ok(kernel);
+    plans: &[Plan],
+    missing: &[usize],
+    mut take: impl FnMut(usize, Kernel),
+) -> Result<()> {
+    for &i in missing {
+        take(i, plans[i].built_here(device)?);
     }
-    let program = device.program(&source)?;
-    if let Err(error) = compile(device, &program, &options) {
-        return Err(not_built(device, &program, path, &error));
+    Ok(())
+}
+
+/// In processes of their own, as many at once as there are processors.
+fn build_elsewhere(
+    arranged: &Arranged,
+    device: &Device,
+    plans: &[Plan],
+    missing: &[usize],
+    mut take: impl FnMut(usize, Kernel),
+) -> Result<()> {
+    let at_once = available_parallelism().map_or(1, usize::from);
+    let requests = missing.iter().map(|&i| (i, plans[i].request(device)));
+    let requests: Vec<(usize, Request)> = requests.collect();
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (send, receive) = mpsc::channel();
+    let mut outcome = Ok(());
+    std::thread::scope(|scope| {
+        for _ in 0..at_once.min(requests.len()) {
+            let (send, requests, next, failed) = (send.clone(), &requests, &next, &failed);
+            scope.spawn(move || {
+                let mut builders = Builders::new(arranged);
+                while let Some((i, request)) = requests.get(next.fetch_add(1, Ordering::Relaxed))
+                    && !failed.load(Ordering::Relaxed)
+                {
+                    let _ = send.send((*i, builders.build(request, failed)));
+                }
+            });
+        }
+        drop(send);
+        for (i, answer) in receive {
+            match answer.and_then(|answer| plans[i].answered(device, answer)) {
+                Ok(kernel) => take(i, kernel),
+                // The others end by this one, which says why.
+                Err(error) if outcome.is_ok() => {
+                    failed.store(true, Ordering::Relaxed);
+                    outcome = Err(error);
+                }
+                Err(_) => {}
+            }
+        }
+    });
+    outcome
+}
+
+/// A kernel's source and options, and where its binary is kept.
+struct Plan<'a> {
+    order: &'a Order<'a>,
+    source: String,
+    options: CString,
+    kept: Option<PathBuf>,
+}
+
+impl<'a> Plan<'a> {
+    fn of(device: &Device, order: &'a Order<'a>) -> Result<Self> {
+        let source = source::flatten(&order.path)?;
+        // Drivers print their compiler's warnings, which are the tests' business, beside the program's own
+        // words.
+        let options = format!("{} -w", order.defines.options());
+        // A kept program is one whose arguments were compared with this signature: it does not say them.
+        let kept = (device.binaries()).path(device.info(), &source, &options, order.signature);
+        Ok(Self {
+            order,
+            source,
+            options: c_string(options)?,
+            kept,
+        })
     }
-    let kernel = core::create_kernel(&program, name)
-        .map_err(|e| device_error(&format!("take the kernel {name}"), &e))?;
-    signature::check(&kernel, name, signature)?;
-    if let Some(path) = kept {
-        binary::write(&path, &program);
+
+    /// From where built programs are kept.
+    fn kept(&self, device: &Device) -> Option<Kernel> {
+        let path = self.kept.as_deref()?;
+        let binary = binary::read(path)?;
+        crash::suspect(path);
+        let kernel = self.from_binary(device, &binary)?;
+        asked_for(path);
+        Some(kernel)
     }
-    Ok(kernel)
+
+    /// The kernel of a built program; nothing where the driver does not take it.
+    fn from_binary(&self, device: &Device, binary: &[u8]) -> Option<Kernel> {
+        let devices = [device.device_id()];
+        let context = device.context();
+        let program = core::create_program_with_binary(context, &devices, &[binary]).ok()?;
+        compile(device, &program, &self.options).ok()?;
+        core::create_kernel(&program, self.order.name).ok()
+    }
+
+    fn keep(&self, binary: &[u8]) {
+        if let Some(path) = &self.kept {
+            binary::keep(path, binary);
+            crash::suspect(path);
+        }
+    }
+
+    fn built_here(&self, device: &Device) -> Result<Kernel> {
+        let Order {
+            path,
+            name,
+            signature,
+            ..
+        } = self.order;
+        let program = compiled(device, &self.source, &self.options, path)?;
+        let kernel = kernel_of(&program, name)?;
+        signature::check(&kernel, name, signature.iter().map(Parameter::as_told))?;
+        if let Some(binary) = binary::of(&program) {
+            self.keep(&binary);
+        }
+        Ok(kernel)
+    }
+
+    fn request(&self, device: &Device) -> Request {
+        let signature = self.order.signature.iter().map(Parameter::as_told);
+        Request {
+            device: device.info().id,
+            identity: builder::identity(device.info()),
+            path: self.order.path.clone(),
+            source: self.source.clone(),
+            options: self.options.to_string_lossy().into_owned(),
+            kernel: self.order.name.to_owned(),
+            signature: signature
+                .map(|(a, b)| (a.to_owned(), b.to_owned()))
+                .collect(),
+        }
+    }
+
+    /// The kernel that another process built, or could not.
+    fn answered(&self, device: &Device, answer: Answer) -> Result<Kernel> {
+        if let Answer::Built(binary) = answer
+            && let Some(kernel) = self.from_binary(device, &binary)
+        {
+            self.keep(&binary);
+            return Ok(kernel);
+        }
+        self.built_here(device)
+    }
+}
+
+/// The binary of a requested kernel, packed, built in this process; nothing where the driver gives none.
+///
+/// # Errors
+/// As [`build`].
+pub(super) fn binary_of(device: &Device, request: &Request) -> Result<Option<Vec<u8>>> {
+    let options = c_string(request.options.clone())?;
+    let program = compiled(device, &request.source, &options, &request.path)?;
+    let kernel = kernel_of(&program, &request.kernel)?;
+    let signature = request.signature.iter();
+    signature::check(
+        &kernel,
+        &request.kernel,
+        signature.map(|(name, type_name)| (name.as_str(), type_name.as_str())),
+    )?;
+    Ok(binary::of(&program).map(|binary| binary::packed(&binary)))
+}
+
+fn c_string(options: String) -> Result<CString> {
+    CString::new(options).map_err(|_| Error::failed("a kernel constant holds a NUL byte"))
+}
+
+fn compiled(device: &Device, source: &str, options: &CString, path: &str) -> Result<Program> {
+    let program = device.program(source)?;
+    match compile(device, &program, options) {
+        Ok(()) => Ok(program),
+        Err(error) => Err(not_built(device, &program, path, &error)),
+    }
+}
+
+fn kernel_of(program: &Program, name: &str) -> Result<Kernel> {
+    core::create_kernel(program, name)
+        .map_err(|e| device_error(&format!("take the kernel {name}"), &e))
 }
 
 fn compile(device: &Device, program: &Program, options: &CString) -> core::Result<()> {
@@ -97,12 +282,4 @@ fn not_built(device: &Device, program: &Program, path: &str, error: &core::Error
         device.info().name,
         first_lines.join("; ")
     ))
-}
-
-/// The kernel `name` of a built program; nothing where the driver does not take it.
-fn from_binary(device: &Device, binary: &[u8], name: &str, options: &CString) -> Option<Kernel> {
-    let devices = [device.device_id()];
-    let program = core::create_program_with_binary(device.context(), &devices, &[binary]).ok()?;
-    compile(device, &program, options).ok()?;
-    core::create_kernel(&program, name).ok()
 }

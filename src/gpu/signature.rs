@@ -14,6 +14,13 @@ pub struct Parameter {
     pub(super) type_name: String,
 }
 
+impl Parameter {
+    /// Its name and its type, as OpenCL gives them.
+    pub(super) fn as_told(&self) -> (&str, &str) {
+        (self.name, &self.type_name)
+    }
+}
+
 /// A buffer that the pass reads.
 pub fn input<T: Element>(name: &'static str) -> Parameter {
     input_of(name, T::CL_NAME)
@@ -51,18 +58,21 @@ pub fn value<T: Element>(name: &'static str) -> Parameter {
     }
 }
 
-/// Compares the kernel's own arguments with the signature. Only kernels built from source tell them
+/// Compares the kernel's own arguments with the names and types of a signature. Only kernels built from source tell them
 /// (OpenCL 1.2, §5.7.3).
 ///
 /// # Errors
 /// They differ, or the kernel does not tell.
-pub(super) fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Result<()> {
+pub(super) fn check<'a>(
+    kernel: &Kernel,
+    name: &str,
+    signature: impl ExactSizeIterator<Item = (&'a str, &'a str)>,
+) -> Result<()> {
+    let does_not_tell = || Error::failed(format!("the pass {name} does not tell its arguments"));
     let KernelInfoResult::NumArgs(count) = core::get_kernel_info(kernel, KernelInfo::NumArgs)
         .map_err(|e| device_error("count a kernel's arguments", &e))?
     else {
-        return Err(Error::failed(format!(
-            "the pass {name} does not tell its arguments"
-        )));
+        return Err(does_not_tell());
     };
     if count as usize != signature.len() {
         return Err(Error::failed(format!(
@@ -70,7 +80,7 @@ pub(super) fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Res
             signature.len()
         )));
     }
-    for (index, parameter) in signature.iter().enumerate() {
+    for (index, (name_given, type_given)) in signature.enumerate() {
         let ask = |what| {
             core::get_kernel_arg_info(kernel, index as u32, what, None)
                 .map_err(|e| device_error("ask for a kernel's arguments", &e))
@@ -78,15 +88,12 @@ pub(super) fn check(kernel: &Kernel, name: &str, signature: &[Parameter]) -> Res
         let (KernelArgInfoResult::Name(name_there), KernelArgInfoResult::TypeName(type_there)) =
             (ask(KernelArgInfo::Name)?, ask(KernelArgInfo::TypeName)?)
         else {
-            return Err(Error::failed(format!(
-                "the pass {name} does not tell its arguments"
-            )));
+            return Err(does_not_tell());
         };
         let type_there = type_there.trim_start_matches("struct ").replace(' ', "");
-        if name_there != parameter.name || type_there != parameter.type_name {
+        if name_there != name_given || type_there != type_given {
             return Err(Error::failed(format!(
-                "argument {index} of the pass {name} is '{type_there} {name_there}', its Rust function gives '{} {}'",
-                parameter.type_name, parameter.name
+                "argument {index} of the pass {name} is '{type_there} {name_there}', its Rust function gives '{type_given} {name_given}'"
             )));
         }
     }

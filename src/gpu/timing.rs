@@ -1,9 +1,12 @@
-//! Device times of the passes of a frame, from the queue's own clock.
+//! The passes of a frame, launched together and timed by the queue's own clock.
+
+use std::time::Instant;
 
 use ocl::core::{self, Event, ProfilingInfo};
 
 use crate::error::Result;
 
+use super::pass::{Pass, Waiting};
 use super::{Device, device_error};
 
 /// How long one pass ran on the device.
@@ -13,23 +16,39 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// The launches of a frame, in order.
+/// The launches of a frame, in order. They wait until all their passes are built, so that building is never
+/// part of the device's time.
 #[derive(Default)]
 pub struct Timings {
-    events: Vec<(&'static str, Event)>,
+    waiting: Vec<Waiting>,
 }
 
 impl Timings {
-    pub(super) fn record(&mut self, name: &'static str, event: Event) {
-        self.events.push((name, event));
+    pub(super) fn add(&mut self, launch: Waiting) {
+        self.waiting.push(launch);
     }
 
-    /// Waits for all launches; gives each pass's time and the time from the first launch's start to
-    /// the last one's end, in ms.
+    /// Builds the passes that are not built yet; gives the time in ms, 0 where there are none.
     ///
     /// # Errors
-    /// A launch failed on the device.
+    /// One does not build.
+    pub fn build(&self, device: &Device) -> Result<f64> {
+        let start = Instant::now();
+        match Pass::build_all(device, self.waiting.iter().map(|launch| &launch.pass))? {
+            0 => Ok(0.0),
+            _ => Ok(start.elapsed().as_secs_f64() * 1e3),
+        }
+    }
+
+    /// Builds what is not built, launches all and waits; gives each pass's time and the time from the first
+    /// launch's start to the last one's end, in ms.
+    ///
+    /// # Errors
+    /// A pass does not build; a launch failed on the device.
     pub fn finish(self, device: &Device) -> Result<(Vec<PassTime>, f64)> {
+        self.build(device)?;
+        let events = self.waiting.iter().map(|launch| launch.start(device));
+        let events = events.collect::<Result<Vec<Event>>>()?;
         device.finish()?;
         let at_ns = |event: &Event, moment| -> Result<u64> {
             core::get_event_profiling_info(event, moment)
@@ -37,15 +56,15 @@ impl Timings {
                 .time()
                 .map_err(|e| device_error("time a pass", &e))
         };
-        let mut times = Vec::with_capacity(self.events.len());
+        let mut times = Vec::with_capacity(events.len());
         let (mut first_ns, mut last_ns) = (u64::MAX, 0);
-        for (name, event) in &self.events {
+        for (launch, event) in self.waiting.iter().zip(&events) {
             let start_ns = at_ns(event, ProfilingInfo::Start)?;
             let end_ns = at_ns(event, ProfilingInfo::End)?;
             first_ns = first_ns.min(start_ns);
             last_ns = last_ns.max(end_ns);
             times.push(PassTime {
-                name,
+                name: launch.name(),
                 ms: end_ns.saturating_sub(start_ns) as f64 * 1e-6,
             });
         }

@@ -14,8 +14,7 @@ use flate2::write::ZlibEncoder;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
-use crate::kept::{Kept, asked_for};
-use crate::output::write_atomically;
+use crate::kept::{self, Kept, asked_for};
 use crate::progress::Progress;
 use crate::reference;
 use crate::scene::Scene;
@@ -115,7 +114,7 @@ const EXTENSION: &str = "frame";
 /// The colour and then the other planes, zlib-compressed (whose checksum shows a torn file).
 fn write(path: &Path, frame: &Frame) -> Result<()> {
     let failed = |cause| Error::writing(path, "write", &cause);
-    write_atomically(path, |out| {
+    kept::write(path, |out| {
         let mut out = ZlibEncoder::new(out, Compression::fast());
         let mut frame = frame.clone();
         for plane in frame.bytes_mut() {
@@ -128,7 +127,7 @@ fn write(path: &Path, frame: &Frame) -> Result<()> {
 
 /// The picture kept in `path`; nothing where there is none, or none that is whole.
 fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
-    let mut file = ZlibDecoder::new(std::fs::File::open(path).ok()?);
+    let mut file = ZlibDecoder::new(kept::open(path).ok()?);
     let mut frame = Frame::blank(scene.size, wanted).ok()?;
     for plane in frame.bytes_mut() {
         file.read_exact(plane).ok()?;

@@ -196,7 +196,6 @@ impl<'a> Renderer<'a> {
         } else {
             0.0
         };
-        let build_ms_before = self.built.build_ms();
         let mut timings = Timings::default();
         let mut run = Run {
             device: self.device,
@@ -244,6 +243,7 @@ impl<'a> Renderer<'a> {
             )?;
             planes.display = Some(display);
         }
+        let build_ms = timings.build(self.device)?;
         let (passes, render_ms) = timings.finish(self.device)?;
         let finished = Instant::now();
         let frame = planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?;
@@ -251,7 +251,7 @@ impl<'a> Renderer<'a> {
             frame,
             read_back_ms: finished.elapsed().as_secs_f64() * 1e3,
             passes,
-            build_ms: self.built.build_ms() - build_ms_before,
+            build_ms,
             upload_ms: std::mem::take(&mut self.upload_ms),
             classify_ms,
             uploaded_bytes: std::mem::take(&mut self.uploaded_bytes)

@@ -2,6 +2,7 @@
 //! cast apart from cameras.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::error::Result;
 use crate::extent::ImageSize;
@@ -35,7 +36,7 @@ const ROW: u32 = 4096;
 pub struct RayCaster<'a> {
     device: &'a Device,
     lanes: Lanes,
-    built: HashMap<Variant, Pass>,
+    built: HashMap<Variant, Arc<Pass>>,
 }
 
 impl<'a> RayCaster<'a> {
@@ -107,7 +108,7 @@ impl<'a> RayCaster<'a> {
         let count = rays.len() as u32;
         let size = ImageSize::new(ROW.min(count), count.div_ceil(ROW))?;
         let mut timings = Timings::default();
-        self.pass(variant)?
+        self.pass(variant)
             .launch(device)
             .input(&voxels)
             .input(&classes)
@@ -136,7 +137,7 @@ impl<'a> RayCaster<'a> {
             .collect())
     }
 
-    fn pass(&mut self, variant: Variant) -> Result<&Pass> {
+    fn pass(&mut self, variant: Variant) -> &Arc<Pass> {
         if !self.built.contains_key(&variant) {
             let signature = vec![
                 input_of("voxels", voxel_cl_name(variant.voxel)),
@@ -156,11 +157,11 @@ impl<'a> RayCaster<'a> {
             let lanes = variant.lanes;
             let defines = variant.defines().with("LANES", lanes);
             let defines = defines.with("CERTIFICATE", 1);
-            let pass = Pass::build(self.device, "test", "aimed_rays", &defines, signature)?;
+            let pass = Pass::new("test", "aimed_rays", defines, signature);
             let pass = pass.with_tile([lanes.get() as usize, 1]);
-            self.built.insert(variant, pass);
+            self.built.insert(variant, Arc::new(pass));
         }
-        Ok(&self.built[&variant])
+        &self.built[&variant]
     }
 }
 

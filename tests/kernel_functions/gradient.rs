@@ -47,7 +47,8 @@ fn on_device(size: [u32; 3], source: &Source, points: &[[f32; 4]]) -> Option<See
     ]);
     let defines = variant(VoxelType::F32, Filter::Linear, 8).defines();
     let defines = defines.with("GRADIENT", format!("GRADIENT_{method}"));
-    let pass = Pass::build(&device, "test", "gradient", &defines, signature).unwrap();
+    let pass = Pass::new("test", "gradient", defines, signature);
+    let pass = pass.built(&device).unwrap();
     let mut gradients = room::<[f32; 4]>(&device, points.len());
     let mut normals = room::<[f32; 4]>(&device, points.len());
     let (voxels, directions) = match source {

@@ -14,6 +14,8 @@ mod reflection;
 mod spans;
 mod transfer;
 
+use std::sync::Arc;
+
 use angioray::extent::ImageSize;
 use angioray::gpu::{Buffer, Device, Element, Launch, Parameter, Pass, Timings};
 use angioray::octree::Leaf;
@@ -36,8 +38,14 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32) -> Variant {
 const U8: VoxelType = VoxelType::U8;
 
 /// `kernels/test/<name>.cl`, built for `variant`.
-fn build(device: &Device, name: &'static str, variant: Variant, signature: Vec<Parameter>) -> Pass {
-    Pass::build(device, "test", name, &variant.defines(), signature).unwrap()
+fn build(
+    device: &Device,
+    name: &'static str,
+    variant: Variant,
+    signature: Vec<Parameter>,
+) -> Arc<Pass> {
+    let pass = Pass::new("test", name, variant.defines(), signature);
+    pass.built(device).unwrap()
 }
 
 fn upload<T: Element>(device: &Device, elements: &[T]) -> Buffer<T> {

@@ -33,33 +33,31 @@ pub fn adaptive_emission(
         .with("LANES", variant.lanes)
         .with("SHADED", switch(shaded));
     let defines = planes.define(defines);
-    let pass = run
-        .built
-        .pass(run.device, "adaptive_emission", defines, || {
-            let mut signature = vec![
-                voxels(variant),
-                input::<u8>("node_class"),
-                levels(),
-                input::<u64>("cells"),
-                input::<f32>("knot_values"),
-                input::<[f32; 4]>("knot_colors"),
-                input::<[f32; 4]>("knot_sums"),
-            ];
-            signature.extend(sums_values.then(|| input::<f32>("knot_value_sums")));
-            signature.extend([
-                DeviceClip::planes_parameter(),
-                DeviceClip::count_parameter(),
-            ]);
-            signature.extend(gradient.parameters());
-            signature.extend([
-                value::<VolumeGrid>("volume"),
-                value::<RayGrid>("rays"),
-                value::<EmissionCast>("cast"),
-                value::<Shading>("shading"),
-            ]);
-            signature.extend(planes.parameters());
-            signature
-        })?;
+    let pass = run.built.pass("adaptive_emission", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            levels(),
+            input::<u64>("cells"),
+            input::<f32>("knot_values"),
+            input::<[f32; 4]>("knot_colors"),
+            input::<[f32; 4]>("knot_sums"),
+        ];
+        signature.extend(sums_values.then(|| input::<f32>("knot_value_sums")));
+        signature.extend([
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
+        ]);
+        signature.extend(gradient.parameters());
+        signature.extend([
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<EmissionCast>("cast"),
+            value::<Shading>("shading"),
+        ]);
+        signature.extend(planes.parameters());
+        signature
+    })?;
     let mut launch = run
         .voxels
         .give(pass.launch(run.device))

@@ -67,7 +67,7 @@ pub fn cast_emission(
         .with("HOMOGENEOUS", switch(node_average.is_some()))
         .with("SHADED", switch(shaded));
     let defines = planes.define(defines);
-    let pass = run.built.pass(run.device, "cast_emission", defines, || {
+    let pass = run.built.pass("cast_emission", defines, || {
         let mut signature = vec![
             voxels(variant),
             input::<u8>("node_class"),

@@ -32,7 +32,7 @@ pub fn cast_maximum(
         .with("PROJECTION", which as u32)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
-    let pass = run.built.pass(run.device, "cast_maximum", defines, || {
+    let pass = run.built.pass("cast_maximum", defines, || {
         let mut signature = vec![
             voxels(variant),
             input::<u8>("node_class"),

@@ -31,7 +31,7 @@ pub fn cast_surface(
         .with("LANES", variant.lanes)
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
-    let pass = run.built.pass(run.device, "cast_surface", defines, || {
+    let pass = run.built.pass("cast_surface", defines, || {
         let mut signature = vec![
             voxels(variant),
             input::<u8>("node_class"),

@@ -33,7 +33,7 @@ pub fn exact_surface(
         .with("LAYERS", switch(with_layers))
         .with("CERTIFICATE", switch(with_certificate))
         .with("COUNTERS", switch(with_counters));
-    let pass = run.built.pass(run.device, "exact_surface", defines, || {
+    let pass = run.built.pass("exact_surface", defines, || {
         let mut signature = vec![
             voxels(variant),
             input::<u8>("node_class"),

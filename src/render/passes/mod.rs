@@ -14,7 +14,8 @@ mod tone_curve;
 mod window_value;
 
 use std::collections::HashMap;
-use std::time::Instant;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
 
 use crate::error::Result;
 use crate::extent::ImageSize;
@@ -42,37 +43,29 @@ pub use surface_normal::surface_normal;
 pub use tone_curve::tone_curve;
 pub use window_value::window_value;
 
-/// The built passes of a renderer: each variant is built once, when it is first needed.
+/// The passes of a renderer: each variant is built once, when it is first launched.
 #[derive(Default)]
 pub struct Built {
-    passes: HashMap<(&'static str, Defines), Pass>,
-    build_ms: f64,
+    passes: HashMap<(&'static str, Defines), Arc<Pass>>,
 }
 
 impl Built {
-    /// Time spent building so far.
-    pub fn build_ms(&self) -> f64 {
-        self.build_ms
-    }
-
-    /// The pass `name` with these constants, built if need be.
+    /// The pass `name` with these constants.
     pub(super) fn pass(
         &mut self,
-        device: &Device,
         name: &'static str,
         defines: Defines,
         signature: impl FnOnce() -> Vec<Parameter>,
-    ) -> Result<&Pass> {
-        let key = (name, defines);
-        if !self.passes.contains_key(&key) {
-            let start = Instant::now();
-            let lanes = key.1.get("LANES").map_or(Ok(Lanes::ONE), str::parse)?;
-            let pass = Pass::build(device, "pass", name, &key.1, signature())?;
-            let pass = pass.with_tile(lanes.tile());
-            self.build_ms += start.elapsed().as_secs_f64() * 1e3;
-            self.passes.insert(key.clone(), pass);
-        }
-        Ok(&self.passes[&key])
+    ) -> Result<&Arc<Pass>> {
+        Ok(match self.passes.entry((name, defines)) {
+            Entry::Occupied(there) => there.into_mut(),
+            Entry::Vacant(place) => {
+                let defines = place.key().1.clone();
+                let lanes = defines.get("LANES").map_or(Ok(Lanes::ONE), str::parse)?;
+                let pass = Pass::new("pass", name, defines, signature());
+                place.insert(Arc::new(pass.with_tile(lanes.tile())))
+            }
+        })
     }
 }
 

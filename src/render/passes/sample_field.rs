@@ -17,7 +17,7 @@ pub fn sample_field(
 ) -> Result<()> {
     let variant = run.variant;
     let defines = variant.defines().with("LANES", variant.lanes);
-    let pass = run.built.pass(run.device, "sample_field", defines, || {
+    let pass = run.built.pass("sample_field", defines, || {
         vec![
             voxels(variant),
             value::<VolumeGrid>("volume"),

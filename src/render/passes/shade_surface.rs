@@ -21,7 +21,7 @@ pub fn shade_surface(
         .defines()
         .with("LANES", variant.lanes)
         .with("SHADED", switch(shaded));
-    let pass = run.built.pass(run.device, "shade_surface", defines, || {
+    let pass = run.built.pass("shade_surface", defines, || {
         let mut signature = vec![
             value::<RayGrid>("rays"),
             value::<Shading>("shading"),

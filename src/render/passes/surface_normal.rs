@@ -20,7 +20,7 @@ pub fn surface_normal(
 ) -> Result<()> {
     let variant = run.variant;
     let defines = gradient.define(variant.defines().with("LANES", variant.lanes));
-    let pass = run.built.pass(run.device, "surface_normal", defines, || {
+    let pass = run.built.pass("surface_normal", defines, || {
         let mut signature: Vec<_> = gradient.parameters().collect();
         if gradient.reads_voxels() {
             signature.push(voxels(variant));

@@ -16,7 +16,7 @@ pub fn tone_curve(
 ) -> Result<()> {
     let variant = run.variant;
     let defines = variant.defines().with("LANES", variant.lanes);
-    let pass = run.built.pass(run.device, "tone_curve", defines, || {
+    let pass = run.built.pass("tone_curve", defines, || {
         vec![
             value::<RayGrid>("rays"),
             value::<Tone>("tone"),

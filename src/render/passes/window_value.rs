@@ -17,7 +17,7 @@ pub fn window_value(
 ) -> Result<()> {
     let variant = run.variant;
     let defines = variant.defines().with("LANES", variant.lanes);
-    let pass = run.built.pass(run.device, "window_value", defines, || {
+    let pass = run.built.pass("window_value", defines, || {
         vec![
             value::<RayGrid>("rays"),
             value::<[f32; 2]>("window"),

@@ -1,0 +1,142 @@
+//! A process that a signal kills says so in a sentence first.
+//!
+//! Drivers run their compilers' and our kernels' machine code in this process: what they abort, or do
+//! wrong with memory, ends it. Nothing can be mended then, but the user can be told what was at work, and
+//! kept files that may be the cause are removed, so that the next run begins without them.
+
+use std::path::Path;
+
+/// What the process exits with when such a signal ends it, as [`crate::error::ErrorKind::Resource`].
+pub const EXIT_CODE: i32 = 74;
+
+/// From now on SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and
+/// [`EXIT_CODE`]. For the program's `main`: a library leaves signals to the program that uses it.
+pub fn catch() {
+    #[cfg(unix)]
+    signals::catch();
+}
+
+/// What the sentence names from now on, such as `the device 'x' was at work`.
+pub fn while_at_work(clause: &str) {
+    #[cfg(unix)]
+    signals::set_clause(clause);
+    #[cfg(not(unix))]
+    let _ = clause;
+}
+
+/// A kept file that is removed if a signal ends the process: it may be the cause, and can be made again.
+pub fn suspect(path: &Path) {
+    #[cfg(unix)]
+    signals::suspect(path);
+    #[cfg(not(unix))]
+    let _ = path;
+}
+
+#[cfg(unix)]
+mod signals {
+    use std::ffi::{CStr, CString, c_char, c_int};
+    use std::os::unix::ffi::OsStrExt;
+    use std::path::Path;
+    use std::ptr::null_mut;
+    use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicUsize, Ordering};
+
+    use super::EXIT_CODE;
+
+    /// With their names, each with a NUL at its end.
+    const SIGNALS: [(c_int, &CStr); 5] = [
+        (libc::SIGABRT, c"SIGABRT"),
+        (libc::SIGILL, c"SIGILL"),
+        (libc::SIGSEGV, c"SIGSEGV"),
+        (libc::SIGBUS, c"SIGBUS"),
+        (libc::SIGFPE, c"SIGFPE"),
+    ];
+
+    /// More kept files than a process uses.
+    const MOST_SUSPECTS: usize = 1024;
+
+    // What the handler reads: strings that are never freed.
+    static CLAUSE: AtomicPtr<c_char> = AtomicPtr::new(null_mut());
+    static SUSPECTS: [AtomicPtr<c_char>; MOST_SUSPECTS] =
+        [const { AtomicPtr::new(null_mut()) }; MOST_SUSPECTS];
+    static SUSPECTS_SET: AtomicUsize = AtomicUsize::new(0);
+    static ENDING: AtomicBool = AtomicBool::new(false);
+
+    pub fn catch() {
+        for (signal, _) in SIGNALS {
+            // SAFETY: the action is whole: zero is its empty mask and no flags. The handler calls only what
+            // a handler may call. It runs on the stack that Rust's threads set aside, where there is one.
+            unsafe {
+                let mut action: libc::sigaction = std::mem::zeroed();
+                action.sa_sigaction = end as extern "C" fn(c_int) as libc::sighandler_t;
+                action.sa_flags = libc::SA_ONSTACK;
+                libc::sigaction(signal, &raw const action, null_mut());
+            }
+        }
+    }
+
+    /// A string that a handler may read at any time.
+    fn leaked(bytes: &[u8]) -> Option<*mut c_char> {
+        CString::new(bytes).ok().map(CString::into_raw)
+    }
+
+    pub fn set_clause(clause: &str) {
+        let clause = clause.replace(char::is_control, " ");
+        if let Some(clause) = leaked(clause.as_bytes()) {
+            CLAUSE.store(clause, Ordering::Release);
+        }
+    }
+
+    pub fn suspect(path: &Path) {
+        let place = SUSPECTS_SET.fetch_add(1, Ordering::Relaxed);
+        if let (Some(slot), Some(path)) = (SUSPECTS.get(place), leaked(path.as_os_str().as_bytes()))
+        {
+            slot.store(path, Ordering::Release);
+        }
+    }
+
+    /// Ends the process. Another thread that is struck meanwhile waits for that.
+    extern "C" fn end(signal: c_int) {
+        if ENDING.swap(true, Ordering::AcqRel) {
+            loop {
+                // SAFETY: a handler may wait.
+                unsafe { libc::pause() };
+            }
+        }
+        let name = SIGNALS.iter().find(|(number, _)| *number == signal);
+        say(c"error: the process was ended by ");
+        say(name.map_or(c"a signal", |(_, name)| name));
+        let clause = CLAUSE.load(Ordering::Acquire);
+        if !clause.is_null() {
+            say(c" while ");
+            // SAFETY: it came from a CString that is never freed.
+            say(unsafe { CStr::from_ptr(clause) });
+        }
+        say(c"\n");
+        let mut removed = false;
+        for slot in &SUSPECTS {
+            let path = slot.load(Ordering::Acquire);
+            if !path.is_null() {
+                // SAFETY: as above; a handler may remove a file.
+                removed |= unsafe { libc::unlink(path) } == 0;
+            }
+        }
+        say(match (removed, clause.is_null()) {
+            (true, _) => {
+                c"hint: the kept kernels that were in use are removed: the same command builds them again\n"
+            }
+            (false, false) => {
+                c"hint: its driver failed, or memory ran out: '--device reference' needs no driver\n"
+            }
+            (false, true) => c"hint: memory may have run out; else this is a fault of the program\n",
+        });
+        // SAFETY: ends the process at once, as a handler may.
+        unsafe { libc::_exit(EXIT_CODE) };
+    }
+
+    /// To standard error, unbuffered. Where it is closed nobody reads.
+    fn say(text: &CStr) {
+        let bytes = text.to_bytes();
+        // SAFETY: the pointer and the length are those of `bytes`.
+        unsafe { libc::write(libc::STDERR_FILENO, bytes.as_ptr().cast(), bytes.len()) };
+    }
+}

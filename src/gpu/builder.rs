@@ -1,0 +1,364 @@
+//! Kernels built in processes of their own: the program itself, started anew.
+//!
+//! A driver that aborts, or is asked to stop, ends such a process and no other. It takes a [`Request`] after
+//! another, a line each, from its standard input, which stays open for as long as it is wanted, and leaves
+//! each answer in a file.
+
+use std::fs::{self, File};
+use std::io::{BufRead, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::stop;
+
+use super::process::{Arranged, POCL_FOLDER};
+use super::{Device, DeviceInfo, binary, program};
+
+/// The first argument of a builder; the second is its folder.
+const ARGUMENT: &str = "--build-kernels";
+
+/// Where the driver of a builder keeps what it builds, unless the user names a folder.
+const DRIVERS: &str = "driver";
+
+/// What the driver of a builder said.
+const SAID: &str = "said";
+
+/// How often a builder is looked at.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// Of what a driver said before it ended: characters.
+const LAST_WORDS: usize = 400;
+
+/// A kernel to be built.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Request {
+    /// The place of the device in the list, and what is there.
+    pub device: usize,
+    pub identity: [String; 4],
+    /// For messages: `kernels/<path>`.
+    pub path: String,
+    pub source: String,
+    pub options: String,
+    pub kernel: String,
+    /// Names and types of its arguments.
+    pub signature: Vec<(String, String)>,
+}
+
+/// What tells a device from another that has its place now.
+pub fn identity(info: &DeviceInfo) -> [String; 4] {
+    [&info.name, &info.platform, &info.driver, &info.version].map(Clone::clone)
+}
+
+/// What came of a request.
+#[derive(Debug, PartialEq)]
+pub enum Answer {
+    /// The driver's binary.
+    Built(Vec<u8>),
+    /// No other process can build here, or the driver gives no binaries.
+    NotHere,
+}
+
+/// Has kernels built, one after another, by a process that is started when it is first needed.
+pub struct Builders<'a> {
+    arranged: &'a Arranged,
+    /// The user's folder for PoCL. What is in it may be damaged: it is left when a builder fails.
+    users_folder: Option<&'a Path>,
+    current: Option<Builder>,
+}
+
+impl<'a> Builders<'a> {
+    pub fn new(arranged: &'a Arranged) -> Self {
+        Self {
+            arranged,
+            users_folder: arranged.users_folder(),
+            current: None,
+        }
+    }
+
+    /// Has a kernel built. Ends the process when it is time to stop, or `no_longer_wanted`.
+    ///
+    /// # Errors
+    /// The kernel does not build; the driver ended the process; it is time to stop.
+    pub fn build(&mut self, request: &Request, no_longer_wanted: &AtomicBool) -> Result<Answer> {
+        loop {
+            let builder = match &mut self.current {
+                Some(builder) => builder,
+                none => match Builder::start(self.arranged, self.users_folder) {
+                    Some(builder) => none.insert(builder),
+                    None => return Ok(Answer::NotHere),
+                },
+            };
+            match builder.build(request, no_longer_wanted)? {
+                Outcome::Answered(answer) => return Ok(answer),
+                Outcome::Ended(status) => {
+                    let error = builder.failure(request, status);
+                    self.current = None;
+                    if self.users_folder.take().is_none() {
+                        return Err(error);
+                    }
+                }
+            }
+        }
+    }
+}
+
+enum Outcome {
+    Answered(Answer),
+    /// The driver ended the process.
+    Ended(ExitStatus),
+}
+
+/// One process.
+struct Builder {
+    child: Child,
+    folder: PathBuf,
+    requests: u64,
+}
+
+impl Builder {
+    /// Nothing where no process can be started.
+    fn start(arranged: &Arranged, users_folder: Option<&Path>) -> Option<Self> {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let folder = arranged.folder().ok()?.join(format!("builder-{number}"));
+        let drivers = folder.join(DRIVERS);
+        fs::create_dir_all(&drivers).ok()?;
+        // The running program, whatever has its path by now.
+        let program = match Path::new("/proc/self/exe") {
+            own if own.exists() => own.to_owned(),
+            _ => std::env::current_exe().ok()?,
+        };
+        let mut command = Command::new(program);
+        command
+            .arg(ARGUMENT)
+            .arg(&folder)
+            .env(POCL_FOLDER, users_folder.unwrap_or(&drivers))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(File::create(folder.join(SAID)).ok()?);
+        // Ctrl-C is for this process, which ends its builders.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        Some(Self {
+            child: command.spawn().ok()?,
+            folder,
+            requests: 0,
+        })
+    }
+
+    fn build(&mut self, request: &Request, no_longer_wanted: &AtomicBool) -> Result<Outcome> {
+        let failed = |cause: &dyn std::fmt::Display| {
+            Error::resource(format!("a process that builds kernels failed: {cause}"))
+        };
+        let answer = answer_file(&self.folder, self.requests);
+        self.requests += 1;
+        let mut line = serde_json::to_vec(request).map_err(|cause| failed(&cause))?;
+        line.push(b'\n');
+        if let Some(stdin) = &mut self.child.stdin {
+            // A process that is no more is found below.
+            let _ = stdin.write_all(&line);
+        }
+        loop {
+            if let Ok(bytes) = fs::read(&answer) {
+                let _ = fs::remove_file(&answer);
+                return Ok(Outcome::Answered(unpacked(&bytes)?));
+            }
+            if let Some(status) = self.child.try_wait().map_err(|cause| failed(&cause))? {
+                return Ok(Outcome::Ended(status));
+            }
+            if stop::asked() || no_longer_wanted.load(Ordering::Relaxed) {
+                return Err(Error::stopped("stopped while kernels were built"));
+            }
+            std::thread::sleep(LOOK);
+        }
+    }
+
+    /// How the driver ended this process, and its last words.
+    fn failure(&self, request: &Request, status: ExitStatus) -> Error {
+        let [device, ..] = &request.identity;
+        let words = last_words(&self.folder.join(SAID));
+        let colon = if words.is_empty() { "" } else { ": " };
+        let error = Error::resource(format!(
+            "the driver of '{device}' failed while it built kernels/{} ({}){colon}{words}",
+            request.path,
+            how_ended(status)
+        ));
+        if words.contains("\"ld\"") {
+            error.hint("PoCL needs the linker 'ld': install binutils, or add its folder to PATH")
+        } else {
+            error.hint("choose another --device; '--device reference' needs no driver")
+        }
+    }
+}
+
+impl Drop for Builder {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+fn answer_file(folder: &Path, number: u64) -> PathBuf {
+    folder.join(format!("{number}.answer"))
+}
+
+/// An answer as bytes: an exit code, then an error's message, or a packed binary where there is one.
+fn packed(answer: Result<Option<Vec<u8>>>) -> Vec<u8> {
+    match answer {
+        Ok(binary) => [&[0], &binary.unwrap_or_default()[..]].concat(),
+        Err(error) => [&[error.exit_code()], error.to_string().as_bytes()].concat(),
+    }
+}
+
+/// What [`packed`] meant.
+fn unpacked(bytes: &[u8]) -> Result<Answer> {
+    let (code, rest) = bytes.split_first().unwrap_or((&0, &[]));
+    match ErrorKind::of_exit_code(i32::from(*code)) {
+        None => Ok(binary::unpacked(rest)
+            .map_or(Answer::NotHere, |binary| Answer::Built(binary.to_owned()))),
+        // Another device has its place now.
+        Some(ErrorKind::NoDevice) => Ok(Answer::NotHere),
+        Some(kind) => Err(Error::new(kind, String::from_utf8_lossy(rest))),
+    }
+}
+
+fn how_ended(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        let name = signal_hook::low_level::signal_name(signal);
+        return name.map_or_else(|| format!("signal {signal}"), str::to_owned);
+    }
+    status.to_string()
+}
+
+/// The end of what was said, in one line.
+fn last_words(said: &Path) -> String {
+    let text = fs::read(said).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let line: String = lines.collect::<Vec<_>>().join("; ");
+    let line: String = (line.chars())
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    let before = line.chars().count().saturating_sub(LAST_WORDS);
+    let kept: String = line.chars().skip(before).collect();
+    if before > 0 {
+        format!("…{kept}")
+    } else {
+        kept
+    }
+}
+
+/// Whether this process was started as a builder.
+pub fn is_asked_for() -> bool {
+    std::env::args_os()
+        .nth(1)
+        .is_some_and(|first| first == ARGUMENT)
+}
+
+/// Builds the kernels that the standard input requests, as a builder, until it is closed.
+pub fn serve() -> ExitCode {
+    let Some(folder) = std::env::args_os().nth(2).map(PathBuf::from) else {
+        return ExitCode::from(ErrorKind::Usage.exit_code());
+    };
+    let (send, requests) = mpsc::channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines().map_while(|line| line.ok()) {
+            let _ = send.send(line);
+        }
+        end_at_once();
+    });
+    let mut device = None;
+    for (number, line) in (0..).zip(requests) {
+        let bytes = packed(served(&line, &mut device));
+        let (unfinished, answer) = (folder.join("unfinished"), answer_file(&folder, number));
+        let written = fs::write(&unfinished, bytes);
+        if written
+            .and_then(|()| fs::rename(&unfinished, &answer))
+            .is_err()
+        {
+            return ExitCode::from(ErrorKind::Resource.exit_code());
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn served(line: &str, device: &mut Option<Device>) -> Result<Option<Vec<u8>>> {
+    let request: Request = serde_json::from_str(line)
+        .map_err(|cause| Error::failed(format!("a request for a kernel: {cause}")))?;
+    let device = match device {
+        Some(device) => device,
+        none => none.insert(Device::select(&request.device.to_string())?),
+    };
+    if identity(device.info()) != request.identity {
+        return Err(Error::no_device("another device has its place"));
+    }
+    program::binary_of(device, &request)
+}
+
+/// Nobody wants what this process builds. Not by `exit`, whose handlers would meet a compiler at work.
+fn end_at_once() {
+    #[cfg(unix)]
+    // SAFETY: ends the process.
+    unsafe {
+        libc::_exit(0)
+    };
+    #[cfg(not(unix))]
+    std::process::abort();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_is_what_was_packed() {
+        let binary = binary::packed(b"code");
+        let built = unpacked(&packed(Ok(Some(binary.clone()))));
+        assert_eq!(built, Ok(Answer::Built(b"code".to_vec())));
+        assert_eq!(unpacked(&packed(Ok(None))), Ok(Answer::NotHere));
+        for error in [
+            Error::resource("it does not build"),
+            Error::failed("'a' is 'b'"),
+        ] {
+            assert_eq!(unpacked(&packed(Err(error.clone()))), Err(error));
+        }
+        let elsewhere = packed(Err(Error::no_device("another")));
+        assert_eq!(unpacked(&elsewhere), Ok(Answer::NotHere));
+        // A damaged binary is none.
+        let mut damaged = packed(Ok(Some(binary)));
+        *damaged.last_mut().unwrap() ^= 1;
+        assert_eq!(unpacked(&damaged), Ok(Answer::NotHere));
+    }
+
+    #[test]
+    fn the_last_words_are_one_short_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let said = folder.path().join(SAID);
+        assert_eq!(last_words(&said), "");
+        fs::write(&said, "a warning\n\n  error: no \u{1b}[1mld\n").unwrap();
+        assert_eq!(last_words(&said), "a warning; error: no  [1mld");
+        fs::write(&said, [&[b'x'; 5000][..], b"\nthe end\n"].concat()).unwrap();
+        let words = last_words(&said);
+        assert!(
+            words.starts_with('…') && words.ends_with("x; the end"),
+            "{words}"
+        );
+        assert_eq!(words.chars().count(), LAST_WORDS + 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn how_a_process_ended_is_named() {
+        use std::os::unix::process::ExitStatusExt;
+        assert_eq!(how_ended(ExitStatus::from_raw(6)), "SIGABRT");
+        assert_eq!(how_ended(ExitStatus::from_raw(1 << 8)), "exit status: 1");
+    }
+}

@@ -22,8 +22,8 @@ group! {
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
         /// certificate, with commas between, or all that the mode has. certificate goes with iso alone:
-        /// 0 proven to miss, 1 proven to hit, 2 undecided (with fixed steps 2 everywhere, since they
-        /// prove nothing)
+        /// 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device prove nothing: 2
+        /// everywhere
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 

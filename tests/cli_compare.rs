@@ -189,6 +189,81 @@ fn settings_come_from_a_file_and_from_flags() {
 }
 
 #[test]
+fn an_option_applies_to_the_modes_that_it_goes_with() {
+    let Some(device) = common::device_flag() else {
+        return;
+    };
+    let place = Place::with_ball();
+    place.write("one.toml", "[[setting]]\nname = 'coarse'\nstep = 4\n");
+    let compare = format!(
+        "compare ball.nrrd -o out --size 16x16 --repeats 1 --cache cache --configs one.toml {device}"
+    );
+    let scenes = |options: &str| {
+        place.done(&format!("{compare} {options}"));
+        place.json("out/results.json")["scenes"].clone()
+    };
+    let both = scenes("--modes iso,dvr --iso 150 --tf cta --ambient 0.3");
+    assert_eq!(both["iso"]["iso"], 150);
+    assert_eq!(both["iso"]["ambient"], 0.3);
+    assert_eq!(both["iso"]["tf"], Value::Null);
+    let points = both["dvr"]["tf"]["points"].as_array().unwrap().clone();
+    // Unshaded, as dvr is by default.
+    assert_eq!(both["dvr"]["ambient"], Value::Null);
+    // The modes that are compared by default are four, dvr among them.
+    let four = scenes("--tf cta");
+    assert_eq!(four.as_object().unwrap().len(), 4);
+    assert_eq!(four["dvr"]["tf"]["points"].as_array().unwrap(), &points);
+    // The control: without it the points are others.
+    assert_ne!(
+        scenes("--modes dvr")["dvr"]["tf"]["points"]
+            .as_array()
+            .unwrap(),
+        &points
+    );
+    let mixed = scenes("--modes mip,iso --window 450,0");
+    assert_eq!(mixed["mip"]["window"], serde_json::json!([450, 0]));
+    assert_eq!(mixed["iso"]["window"], Value::Null);
+    // How rays are followed too: one setting more in each mode that it goes with.
+    place.done(&format!(
+        "{compare} --modes mip,dvr --step 0.75 --probe off"
+    ));
+    let given = |mode: &str| {
+        let results = place.json("out/results.json");
+        row(&results, mode, "as given")["flags"].clone()
+    };
+    assert_eq!(given("mip"), "--probe off --step 0.75");
+    assert_eq!(given("dvr"), "--step 0.75");
+}
+
+#[test]
+fn an_option_that_goes_with_no_compared_mode_is_refused() {
+    let place = Place::with_ball();
+    for (options, wanted) in [
+        (
+            "--modes mip,iso --tf cta",
+            "'tf' does not go with any mode that is compared: mip, iso",
+        ),
+        ("--modes iso --tf cta", "'tf' does not go with mode 'iso'"),
+        (
+            "--modes mip,minip --iso 3",
+            "'iso' does not go with any mode",
+        ),
+        ("--modes dvr --ambient 0.3", "'ambient' has no effect"),
+        (
+            "--modes iso,dvr --window 0,9",
+            "'window' does not go with any mode",
+        ),
+        (
+            "--modes dvr,mean --probe off",
+            "'probe' does not go with any mode",
+        ),
+    ] {
+        let said = place.refused(&format!("compare ball.nrrd -o out {options}"), 2);
+        assert!(said.contains(wanted), "{options}: {said}");
+    }
+}
+
+#[test]
 fn what_is_done_before_a_failure_is_kept() {
     let Some(device) = common::device_flag() else {
         return;

@@ -105,40 +105,234 @@ fn both_halves_of_a_nifti_pair_are_the_volume() {
     ));
 }
 
+/// The bytes of a file.
+fn bytes(place: &Place, name: &str) -> Vec<u8> {
+    std::fs::read(place.path(name)).unwrap()
+}
+
+/// Pictures of a ball of every kind, beside it: the names, by the reference.
+fn pictures(place: &Place) -> [&'static str; 3] {
+    for (name, flags) in [
+        ("iso.png", "--iso 100 --azimuth 40 --bit-depth 16"),
+        ("mip.exr", "--mode mip --window 90%,p10 --aov depth,value"),
+        ("dvr.png", "--mode dvr --tf cta --background white"),
+    ] {
+        place.done(&format!("render ball.nrrd -o {name} {flags} {REFERENCE}"));
+    }
+    ["iso.png", "mip.exr", "dvr.png"]
+}
+
 #[test]
-fn a_stored_scene_renders_from_another_folder() {
+fn a_replayed_picture_is_the_same_bytes() {
     let place = Place::with_ball();
-    for folder in ["sub", "elsewhere"] {
+    for name in pictures(&place) {
+        let metadata = angioray::frame::read_metadata(&place.path(name)).unwrap();
+        let text = |key: &str| &metadata.iter().find(|(k, _)| k == key).unwrap().1;
+        assert!(text("scene").contains("volume = \"ball.nrrd\"\n"), "{name}");
+        assert_eq!(
+            (text("content").len(), text("device").as_str()),
+            (64, "reference")
+        );
+        // On what rendered it, unless something else is asked for.
+        place.done(&format!("replay {name} -o again-{name}"));
+        assert_eq!(
+            bytes(&place, name),
+            bytes(&place, &format!("again-{name}")),
+            "{name}"
+        );
+        // From the scene alone, as a file of options.
+        let (_, extension) = name.split_once('.').unwrap();
+        let same = match extension {
+            "exr" => "--aov depth,value",
+            _ if name == "iso.png" => "--bit-depth 16",
+            _ => "",
+        };
+        place.done(&format!(
+            "render --scene {name} -o scene.{extension} {same} --device reference"
+        ));
+        assert_eq!(
+            bytes(&place, name),
+            bytes(&place, &format!("scene.{extension}")),
+            "{name}"
+        );
+        // The control: a flag wins over the picture's scene.
+        place.done(&format!(
+            "render --scene {name} -o other.{extension} {same} --device reference --zoom 1.3"
+        ));
+        assert_ne!(
+            bytes(&place, name),
+            bytes(&place, &format!("other.{extension}")),
+            "{name}"
+        );
+    }
+    place.done("replay iso.png -o eight.png --bit-depth 8");
+    assert_ne!(bytes(&place, "eight.png"), bytes(&place, "iso.png"));
+    place.done("orbit ball.nrrd -o f%d.png --frames 3 --iso 100 --size 8 --device reference");
+    place.done("replay f2.png -o again.png");
+    assert_eq!(bytes(&place, "again.png"), bytes(&place, "f2.png"));
+    // Never over what is read.
+    place.refused("replay iso.png -o iso.png", 2);
+    place.refused("replay iso.png -o ball.nrrd", 2);
+}
+
+#[test]
+fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folder() {
+    let place = Place::with_ball();
+    for folder in ["sub", "moved", "work", "far"] {
         std::fs::create_dir(place.path(folder)).unwrap();
     }
-    std::fs::rename(place.path("ball.nrrd"), place.path("sub/ball.nrrd")).unwrap();
+    std::fs::copy(place.path("ball.nrrd"), place.path("sub/ball.nrrd")).unwrap();
+    std::fs::remove_file(place.path("ball.nrrd")).unwrap();
     place.done(&format!(
-        "render sub/ball.nrrd -o a.png --iso 100 {REFERENCE}"
+        "render sub/ball.nrrd -o sub/a.png --iso 100 {REFERENCE}"
     ));
-    let metadata = angioray::frame::read_metadata(&place.path("a.png")).unwrap();
-    let scene = &metadata.iter().find(|(key, _)| key == "scene").unwrap().1;
-    place.write("elsewhere/a.toml", scene);
-    let again = |scene: &str| {
-        let line = format!("render --scene {scene} -o again.png --device reference");
-        let mut command = place.command(&line);
-        command.current_dir(place.path("elsewhere"));
+    let picture = bytes(&place, "sub/a.png");
+    let replay = |folder: &str, line: &str| {
+        let mut command = place.command(line);
+        command.current_dir(place.path(folder));
         command.output().unwrap()
     };
-    let output = again("a.toml");
+    let done = |folder: &str, line: &str| {
+        let output = replay(folder, line);
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        assert_eq!(bytes(&place, &format!("{folder}/b.png")), picture, "{line}");
+        std::fs::remove_file(place.path(&format!("{folder}/b.png"))).unwrap();
+    };
+    // Where the picture says; then beside the picture, wherever that is.
+    done("", "replay sub/a.png -o b.png");
+    done("far", "replay ../sub/a.png -o b.png");
+    std::fs::rename(place.path("sub/a.png"), place.path("moved/a.png")).unwrap();
+    // Nowhere, then in the working folder.
+    std::fs::rename(place.path("sub/ball.nrrd"), place.path("far/ball.nrrd")).unwrap();
+    let output = replay("work", "replay ../moved/a.png -o b.png");
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(65), "{said}");
+    assert!(
+        said.contains("its volume is not there") && said.contains("--volume"),
+        "{said}"
+    );
+    done("far", "replay ../moved/a.png -o b.png");
+    // Where it is said to be; the picture then says so too.
+    let output = replay(
+        "work",
+        "replay ../moved/a.png -o b.png --volume ../far/ball.nrrd",
+    );
     assert!(output.status.success(), "{}", stderr(&output));
-    let bytes = |name: &str| std::fs::read(place.path(name)).unwrap();
-    assert_eq!(bytes("elsewhere/again.png"), bytes("a.png"));
-    // The control: a scene that names its volume as the command line did is relative to itself.
-    let relative: String = scene
-        .lines()
-        .map(|line| match line.starts_with("volume = ") {
-            true => "volume = 'sub/ball.nrrd'\n".to_owned(),
-            false => format!("{line}\n"),
-        })
-        .collect();
-    assert_ne!(&relative, scene);
-    place.write("elsewhere/b.toml", &relative);
-    assert_eq!(again("b.toml").status.code(), Some(65));
+    let metadata = angioray::frame::read_metadata(&place.path("work/b.png")).unwrap();
+    let scene = &metadata.iter().find(|(key, _)| key == "scene").unwrap().1;
+    assert!(scene.contains("volume = \"../far/ball.nrrd\""), "{scene}");
+    // Another volume of its name is not taken for it, and does not hide it.
+    place.done("phantom ramp -o other.nrrd --size 16");
+    std::fs::copy(place.path("other.nrrd"), place.path("work/ball.nrrd")).unwrap();
+    let output = replay("work", "replay ../moved/a.png -o c.png");
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(65), "{said}");
+    assert!(said.contains("not the volume that"), "{said}");
+    assert!(!place.path("work/c.png").exists());
+    std::fs::copy(place.path("far/ball.nrrd"), place.path("moved/ball.nrrd")).unwrap();
+    std::fs::remove_file(place.path("work/b.png")).unwrap();
+    done("work", "replay ../moved/a.png -o b.png");
+    let output = replay("work", "replay ../moved/a.png -o c.png --volume ball.nrrd");
+    assert_eq!(output.status.code(), Some(65), "{}", stderr(&output));
+    // As a scene the picture's volume is found in the same way.
+    std::fs::remove_file(place.path("work/ball.nrrd")).unwrap();
+    let output = replay(
+        "work",
+        "render --scene ../moved/a.png -o d.png --device reference",
+    );
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+#[test]
+fn info_prints_the_scene_that_a_picture_carries() {
+    let place = Place::with_ball();
+    for name in pictures(&place) {
+        let metadata = angioray::frame::read_metadata(&place.path(name)).unwrap();
+        let scene = &metadata.iter().find(|(key, _)| key == "scene").unwrap().1;
+        let printed = place.done(&format!("info {name}"));
+        assert!(printed.ends_with(scene.as_str()), "{printed}");
+        assert!(printed.contains("made by angioray") && printed.contains("on reference"));
+        // What is printed is itself a scene file.
+        place.write("printed.toml", &printed);
+        place.done("info --scene printed.toml");
+        let json: serde_json::Value =
+            serde_json::from_str(&place.done(&format!("info {name} --json"))).unwrap();
+        assert_eq!(json["scene"]["volume"], "ball.nrrd");
+        assert_eq!(json["version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(json["content"].as_str().unwrap().len(), 64);
+    }
+    // The control: of a volume it prints what that is.
+    assert!(place.done("info ball.nrrd").contains("16x16x16"));
+}
+
+#[test]
+fn what_carries_no_scene_is_refused_in_one_sentence() {
+    let place = Place::with_ball();
+    // A picture of another program, a picture that carries nothing, a file that is neither.
+    let file = std::fs::File::create(place.path("bare.png")).unwrap();
+    let mut encoder = png::Encoder::new(file, 1, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder
+        .write_header()
+        .unwrap()
+        .write_image_data(&[7])
+        .unwrap();
+    place.done(&format!("render ball.nrrd -o a.jpg --iso 9 {REFERENCE}"));
+    std::fs::write(place.path("latin.toml"), b"# na\xefve\niso = 9\n").unwrap();
+    place.done(&format!(
+        "render ball.nrrd -o whole.png --iso 9 {REFERENCE}"
+    ));
+    let whole = bytes(&place, "whole.png");
+    std::fs::write(place.path("cut.png"), &whole[..whole.len() / 2]).unwrap();
+    for (file, as_scene, as_image) in [
+        ("bare.png", "carries no scene", "carries no scene"),
+        ("a.jpg", "not a scene", "no picture that carries a scene"),
+        (
+            "latin.toml",
+            "TOML in UTF-8",
+            "no picture that carries a scene",
+        ),
+        (
+            "ball.nrrd",
+            "not a scene",
+            "no picture that carries a scene",
+        ),
+        ("cut.png", "not a readable PNG", "not a readable PNG"),
+        ("none.png", "none.png", "none.png"),
+    ] {
+        let said = place.refused(&format!("render ball.nrrd -o b.png --scene {file}"), 65);
+        assert!(said.contains(as_scene) && said.contains(file), "{said}");
+        let said = place.refused(&format!("replay {file} -o b.png"), 65);
+        assert!(said.contains(as_image) && said.contains(file), "{said}");
+    }
+    let said = place.refused("info bare.png", 65);
+    assert!(said.contains("carries no scene"), "{said}");
+    let said = place.refused("replay -o b.png", 2);
+    assert!(said.contains("no picture was named"), "{said}");
+    // The control.
+    place.done("replay whole.png -o b.png");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scene_is_read_from_a_pipe_too() {
+    let place = Place::with_ball();
+    let line = format!("render ball.nrrd -o a.png --scene /dev/stdin {REFERENCE}");
+    let mut child = place
+        .command(&line)
+        .stdin(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    use std::io::Write;
+    child
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(b"iso = 100\nazimuth = 3\n")
+        .unwrap();
+    assert!(child.wait().unwrap().success());
+    assert!(place.done("info a.png").contains("iso = 100"));
 }
 
 #[test]

@@ -97,7 +97,12 @@ fn a_projection_shows_the_whole_range_unless_told() {
     assert_eq!(window(&given), (-50.0, 200.0));
     let computed = ["--mode", "mean", "--window", "25%,otsu"];
     assert_eq!(window(&computed), (0.0, 42.5));
-    let empty = flags(&["--mode", "mip", "--window", "200,100"]).resolve(&SUBJECT);
+    // Upside down: the higher value is black.
+    assert_eq!(
+        window(&["--mode", "mip", "--window", "200,-50"]),
+        (200.0, -50.0)
+    );
+    let empty = flags(&["--mode", "mip", "--window", "100,100"]).resolve(&SUBJECT);
     assert_eq!(empty.map_err(|e| e.exit_code()), Err(2));
     let constant = Subject {
         range: Range { min: 7.0, max: 7.0 },
@@ -151,7 +156,7 @@ fn defaults_are_made_for_the_robust_range() {
 
 /// Scenes of every kind, far from the defaults.
 #[rustfmt::skip]
-const SCENES: [&[&str]; 10] = [
+const SCENES: [&[&str]; 11] = [
     &["head.nrrd"],
     &[
         "a/b,c.nrrd", "--iso", "33.333333333333336", "--caps", "off", "--refine", "newton:7",
@@ -166,6 +171,7 @@ const SCENES: [&[&str]; 10] = [
     ],
     &["--mode", "mip", "--carm", "RAO 33.3 CAU 12.1", "--zoom", "1.7", "--roll", "11"],
     &["--mode", "lmip", "--lmip-threshold", "40%", "--window", "otsu,90%"],
+    &["--mode", "mip", "--window", "250,-50", "--background", "white"],
     &["--mode", "minip", "--view", "superior"],
     &["--gradient", "precomputed", "--gradient-scale", "5", "--gradient-smooth", "0.7"],
     &["--mode", "dvr", "--shading", "phong", "--gradient", "fourth-order"],
@@ -229,6 +235,66 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
     assert!(read().checked().is_ok());
     std::fs::write(&path, "mode = 'dvr'\ntf = 'none.toml'").unwrap();
     assert!(read().checked().is_err());
+}
+
+#[test]
+fn an_iso_value_outside_the_range_says_what_is_shown() {
+    let Range { min, max } = SUBJECT.range;
+    let said = |text: &str| {
+        let notes = resolved(&file(text)).notes.into_iter();
+        let of_surface = notes.filter(|note| note.contains("no surface"));
+        of_surface.collect::<Vec<String>>()
+    };
+    let below = said(&format!("iso = {}", min - 1.0));
+    assert!(
+        below[0].contains("below") && below[0].contains("only its caps"),
+        "{below:?}"
+    );
+    let open = said(&format!("iso = {}\ncaps = 'off'", min - 1.0));
+    assert!(
+        open[0].contains("below") && open[0].contains("without caps nothing"),
+        "{open:?}"
+    );
+    for caps in ["on", "off"] {
+        let above = said(&format!("iso = {}\ncaps = '{caps}'", max + 1.0));
+        assert!(
+            above[0].contains("above") && above[0].ends_with("nothing is shown"),
+            "{above:?}"
+        );
+        // The control: the ends are values of the volume.
+        assert!(said(&format!("iso = {min}\ncaps = '{caps}'")).is_empty());
+        assert!(said(&format!("iso = {max}\ncaps = '{caps}'")).is_empty());
+    }
+}
+
+#[test]
+fn order_statistics_are_replaced_by_their_values() {
+    // Those asked for, each once, in ascending order.
+    let values = |percents: &[f64]| {
+        assert_eq!(percents, [1.0, 99.5]);
+        vec![7.0, 40.0]
+    };
+    let given = file("mode = 'lmip'\nwindow = 'p99.5,P1'\nlmip-threshold = 'p1'");
+    assert!(given.resolve(&SUBJECT).is_err());
+    let (options, notes) = given.measured(values);
+    assert_eq!(
+        options,
+        file("mode = 'lmip'\nwindow = [40, 7]\nlmip-threshold = 7")
+    );
+    assert_eq!(
+        notes,
+        ["lmip-threshold = p1 is 7", "window = p99.5,p1 is 40,7"]
+    );
+    assert!(options.resolve(&SUBJECT).is_ok());
+    // The controls: a share of the range is none, and nothing is asked for where none is named.
+    let share = file("iso = '50%'");
+    assert_eq!(share.clone().measured(|_| unreachable!()), (share, vec![]));
+    for wrong in ["p", "p101", "p-1", "pp5", "5p", "p5%"] {
+        assert!(
+            refusal(&format!("iso = '{wrong}'")).contains("is not a"),
+            "{wrong}"
+        );
+    }
 }
 
 #[test]

@@ -1,6 +1,12 @@
 //! Flags and the scene file's keys: one name for both, in every command.
 
+#[path = "../cli_place/mod.rs"]
 mod cli_place;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod examples;
+mod words;
 
 use serde_json::Value;
 

@@ -43,7 +43,9 @@ impl ErrorKind {
     pub fn of_exit_code(code: i32) -> Option<Self> {
         use ErrorKind::*;
         let kinds = [Failed, Usage, NoDevice, Input, Resource, Stopped];
-        kinds.into_iter().find(|kind| i32::from(kind.exit_code()) == code)
+        kinds
+            .into_iter()
+            .find(|kind| i32::from(kind.exit_code()) == code)
     }
 }
 

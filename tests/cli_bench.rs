@@ -177,11 +177,40 @@ fn traversals_of_a_volume_give_the_same_bytes() {
         return;
     };
     let place = Place::with_ball();
-    let printed = place.done(&format!("bench traversals ball.nrrd --quick {device}"));
+    std::fs::rename(place.path("ball.nrrd"), place.path("=1+1.nrrd")).unwrap();
+    let [volume, out] = ["=1+1.nrrd", "out"].map(|name| place.path(name));
+    let [volume, out] = [volume, out].map(|path| path.display().to_string());
+    let line = format!("bench traversals {volume} --quick -o {out} {device}");
+    let printed = place.done(&line);
     let rows = rows(&printed);
     let same = rows.iter().filter(|row| row.last() == Some(&"yes"));
     assert_eq!(same.count(), 5 * 5, "{printed}");
     assert!(printed.contains("is the fastest of all"), "{printed}");
+
+    // What a spreadsheet would take for a formula is text in the CSV, and as it is elsewhere.
+    let csv = std::fs::read_to_string(place.path("out/results.csv")).unwrap();
+    let lines: Vec<&str> = csv.split_terminator("\r\n").skip(1).collect();
+    assert!(lines.len() >= 25 && !csv.contains("\r\n="), "{csv}");
+    assert!(
+        lines.iter().all(|line| line.starts_with("\"'=1+1\",")),
+        "{csv}"
+    );
+    let json = place.json("out/results.json");
+    assert_eq!(json["rows"][0]["volume"], "=1+1");
+    assert!(json["rows"][0]["median_ms"].is_number(), "{json:#}");
+
+    // Where the files lay is nobody else's business; the control: they are named.
+    let folder = place.path("").file_name().unwrap().display().to_string();
+    for file in ["results.json", "results.csv", "report.html"] {
+        let text = std::fs::read_to_string(place.path("out").join(file)).unwrap();
+        assert!(!text.contains(&folder), "{file} names {folder}");
+        assert!(text.contains("=1+1"), "{file}");
+    }
+    let again = "angioray bench traversals '=1+1.nrrd' --quick -o out";
+    assert!(
+        json["command_line"].as_str().unwrap().starts_with(again),
+        "{json:#}"
+    );
 }
 
 #[test]

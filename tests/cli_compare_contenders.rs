@@ -7,7 +7,10 @@ mod common;
 
 use std::fs;
 
+use std::path::{Path, PathBuf};
+
 use angioray::frame::read_metadata;
+use base64::prelude::{BASE64_STANDARD, Engine};
 use cli_place::{Place, pixels, stderr};
 use serde_json::Value;
 
@@ -166,6 +169,231 @@ fn a_picture_says_how_to_make_it_again() {
     place.write("other.toml", &text("out/pictures/iso-00-reference.png"));
     place.done(&format!("render -o other.png --scene other.toml {device}"));
     assert!(decoded("other.png") != decoded(png));
+}
+
+/// The files under a folder.
+fn files_under(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let files = entries.flat_map(|path| match path.is_dir() {
+        true => files_under(&path),
+        false => vec![path],
+    });
+    files.collect()
+}
+
+/// What a file says in words: a page with its embedded pictures' texts, a picture's texts.
+fn words_of(file: &Path) -> String {
+    let texts_of = |picture: &Path| {
+        let texts = read_metadata(picture).unwrap().into_iter();
+        texts.map(|(key, text)| key + &text).collect::<String>()
+    };
+    match file.extension().and_then(|ending| ending.to_str()) {
+        Some("png" | "exr") => texts_of(file),
+        _ => {
+            let text = fs::read_to_string(file).unwrap();
+            let embedded = text.split("data:image/png;base64,").skip(1);
+            let embedded: String = embedded
+                .map(|rest| {
+                    let png = BASE64_STANDARD.decode(rest.split('"').next().unwrap());
+                    let file = tempfile::NamedTempFile::new().unwrap();
+                    fs::write(file.path(), png.unwrap()).unwrap();
+                    texts_of(file.path())
+                })
+                .collect();
+            text + &embedded
+        }
+    }
+}
+
+#[test]
+fn a_comparison_that_is_passed_on_does_not_say_where_things_lay() {
+    let Some(device) = common::device_flag() else {
+        return;
+    };
+    let place = Place::with_ball();
+    let folder = place.path("");
+    let folder = folder.to_str().unwrap();
+    place.write("peer.sh", PEER);
+    place.write("scene.toml", &format!("peer = [\"sh {folder}/peer.sh\"]\n"));
+    place.write(
+        "tf.toml",
+        "points = [[0, 0, 0, 0, 0], [200, 1, 1, 1, 0.5]]\n",
+    );
+    place.write(
+        "one.toml",
+        "[[setting]]\nname = 'coarse'\nstep = 3\n[[setting]]\nname = '=1+1'\nstep = 2\n",
+    );
+    let line = format!(
+        "compare {folder}/ball.nrrd -o {folder}/out --size 40x40 --repeats 1 --modes iso,mip,dvr \
+         --configs {folder}/one.toml --scene={folder}/scene.toml --cache {folder}/cache {device}"
+    );
+    // One of the peer's settings kills it.
+    let output = place.run(&line);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let name = Path::new(folder).file_name().unwrap().to_str().unwrap();
+    let files = files_under(&place.path("out"));
+    assert!(files.len() > 30);
+    for file in files {
+        let words = words_of(&file);
+        assert!(!words.contains(name), "{}: {words}", file.display());
+        let is_map = file.to_str().unwrap().contains("-error.");
+        let is_csv = file.extension().is_some_and(|ending| ending == "csv");
+        assert!(
+            is_map || is_csv || words.contains("ball.nrrd"),
+            "{}",
+            file.display()
+        );
+    }
+    let results = place.json("out/results.json");
+    assert_eq!(results["volume"]["file"], "ball.nrrd");
+    assert_eq!(results["scenes"]["mip"]["volume"], "ball.nrrd");
+    let command = results["command_line"].as_str().unwrap();
+    let expected = "angioray compare ball.nrrd -o out --size 40x40 --repeats 1 --modes iso,mip,dvr \
+                    --configs one.toml --scene=scene.toml --cache cache";
+    assert!(command.starts_with(expected), "{command}");
+    let csv = fs::read_to_string(place.path("out/results.csv")).unwrap();
+    assert!(
+        csv.contains(",\"'=1+1\",") && !csv.contains(",=1+1,"),
+        "{csv}"
+    );
+
+    // The control: a picture of its own keeps the place, and is found.
+    place.done(&format!(
+        "render {folder}/ball.nrrd -o one.png --size 8x8 {device}"
+    ));
+    assert!(words_of(&place.path("one.png")).contains(name));
+}
+
+#[test]
+fn long_work_in_a_pipe_says_what_is_being_done() {
+    let Some(device) = common::device_flag() else {
+        return;
+    };
+    let place = Place::with_ball();
+    // It takes longer to read than lines are apart, and has a name that would move the cursor.
+    let slow = PEER.replace("*'\"load\"'*)", "*'\"load\"'*) sleep 7;");
+    place.write("peer.sh", &slow.replace("\"black\"", "\"bl\\u202eack\""));
+    place.write("peers.toml", "peer = 'sh peer.sh'\n");
+    let output = place.run(&format!("{SMALL} --modes mip --scene peers.toml {device}"));
+    let said = stderr(&output);
+    assert!(output.status.success(), "{said}");
+    let line = said.lines().find(|line| line.contains("loads the volume"));
+    let line = line.unwrap_or_else(|| panic!("nothing was said: {said}"));
+    assert!(
+        line.starts_with("bl\\u{202e}ack loads the volume ") && line.ends_with(" s"),
+        "{line}"
+    );
+    assert!(!said.contains(['\u{1b}', '\r', '\u{202e}']), "{said}");
+}
+
+#[test]
+fn a_report_opens_on_the_fastest_and_shows_modes_side_by_side() {
+    let Some(device) = common::device_flag() else {
+        return;
+    };
+    let place = Place::with_ball();
+    place.write(
+        "three.toml",
+        "[[setting]]\nname = 'exact'\nmodes = ['iso', 'mip']\nsampling = 'exact'\n\
+         [[setting]]\nname = 'fine'\nstep = 0.5\n[[setting]]\nname = 'coarse'\nstep = 3\nprobe = 'off'\n",
+    );
+    place.done(&format!(
+        "{SMALL} --modes iso,mip --iso 100 --configs three.toml {device}"
+    ));
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let galleries: Vec<&str> = page.split("class=\"gallery card\"").skip(1).collect();
+    assert_eq!(galleries.len(), 2);
+    let rows = rows(&place);
+    for (gallery, mode) in galleries.iter().zip(["iso", "mip"]) {
+        let opens_on = gallery.split('"').nth(1).unwrap().parse::<usize>().unwrap();
+        let label = gallery.split("data-label=\"").nth(opens_on + 1).unwrap();
+        let label = label.split('"').next().unwrap();
+        // Exact casting has nothing to show beside the reference, however fast it was.
+        assert_ne!(label, "exact", "{mode}");
+        let ms = |row: &&Value| row["times_ms"]["frame"]["median"].as_f64().unwrap();
+        let others = rows
+            .iter()
+            .filter(|row| row["mode"] == mode && row["setting"] != "exact");
+        let fastest = others.min_by(|a, b| ms(a).total_cmp(&ms(b))).unwrap();
+        assert_eq!(fastest["setting"], label, "{mode}");
+    }
+    let (_, pairs) = page.split_once("class=\"pairs card\"").unwrap();
+    let (_, data) = pairs
+        .split_once("<script type=\"application/json\">")
+        .unwrap();
+    let data: Value = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let settings: Vec<&Value> = data
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| &one["label"])
+        .collect();
+    assert_eq!(settings, ["reference", "exact", "fine", "coarse"]);
+    let modes = |at: usize| data[at]["pictures"].as_array().unwrap().len();
+    assert!((0..4).all(|at| modes(at) == 2), "{data}");
+
+    // The control: one mode has nothing to stand beside.
+    place.done(&format!(
+        "{SMALL} --modes mip --configs three.toml {device}"
+    ));
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(!page.contains("class=\"pairs card\""));
+}
+
+#[test]
+fn a_figure_has_one_unit_in_finding_and_table() {
+    let Some(device) = common::device_flag() else {
+        return;
+    };
+    let place = Place::with_ball();
+    place.write(
+        "one.toml",
+        "[[setting]]\nname = 'coarse'\nstep = 3\nprobe = 'off'\nquad = 'riemann'\n",
+    );
+    place.write(
+        "two.toml",
+        "[[setting]]\nname = 'coarse'\nstep = 3\nprobe = 'off'\n",
+    );
+    for (mode, configs, column) in [
+        ("iso", "two", "missed or added, %"),
+        ("mip", "two", "value rmse, %"),
+        ("dvr", "one", "colour rmse, %"),
+    ] {
+        place.done(&format!(
+            "{SMALL} --modes {mode} --configs {configs}.toml {device}"
+        ));
+        let results = place.json("out/results.json");
+        let finding = results["findings"][0].as_str().unwrap();
+        let told = finding.rsplit("coarse (").next().unwrap();
+        let told = told.trim_end_matches(')').rsplit(", ").next().unwrap();
+        let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+        let table = page.split("class=\"sortable\"").nth(1).unwrap();
+        let cells = |of: &str, tag: &str| -> Vec<String> {
+            let cells = of
+                .split(tag)
+                .skip(1)
+                .map(|cell| cell.split_once('>').unwrap().1);
+            cells
+                .map(|cell| cell.split('<').next().unwrap().to_owned())
+                .collect()
+        };
+        let (head, body) = table.split_once("</thead>").unwrap();
+        let at = cells(head, "<th").iter().position(|title| title == column);
+        let at = at.unwrap_or_else(|| panic!("{mode} has no column {column}: {head}"));
+        // The row's first cell is its head.
+        let shown = &cells(body, "<td")[at - 1];
+        let number = |text: &str| {
+            text.parse::<f64>()
+                .unwrap_or_else(|_| panic!("{text}: {finding}"))
+        };
+        let (told, shown) = (number(told), number(shown));
+        assert!(
+            told > 0.0 && (told - shown).abs() <= 0.01 * told,
+            "{mode}: {finding}: {shown}"
+        );
+    }
 }
 
 #[test]

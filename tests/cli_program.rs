@@ -224,6 +224,115 @@ fn wrong_usage_is_exit_2() {
     }
 }
 
+/// What a terminal would act upon in a text that consists of lines.
+fn obeyed(text: &str) -> Vec<char> {
+    let acts = |c: &char| {
+        (c.is_control() && *c != '\n')
+            || ('\u{202a}'..='\u{202e}').contains(c)
+            || ('\u{2066}'..='\u{2069}').contains(c)
+    };
+    text.chars().filter(acts).collect()
+}
+
+const FORGED: &str = "x\nerror: forged\u{1b}[31m\u{9b}\u{202e}\r\u{7}";
+const SHOWN: &str = "x\\nerror: forged\\u{1b}[31m\\u{9b}\\u{202e}\\r\\u{7}";
+
+fn case(name: &str) -> String {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/cases");
+    cases.join(name).display().to_string()
+}
+
+#[test]
+fn no_input_reaches_the_terminal_raw() {
+    let place = Place::with_ball();
+    let said = |arguments: &[&str], code: i32| {
+        let output = place.command("").args(arguments).output().unwrap();
+        let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {err}");
+        assert_eq!(
+            (obeyed(&out), obeyed(&err)),
+            (vec![], vec![]),
+            "{arguments:?}: {err:?}"
+        );
+        let errors = err
+            .lines()
+            .filter(|line| line.starts_with("error:"))
+            .count();
+        assert_eq!(errors, usize::from(code != 0), "{arguments:?}: {err}");
+        format!("{out}{err}")
+    };
+    // Fields, keys and values of files.
+    let units = said(&["info", &case("esc-units.nrrd")], 0);
+    assert!(
+        units.contains("mm\\u{1b}[31mRED\\u{1b}]0;owned\\u{7}"),
+        "{units}"
+    );
+    let size = said(
+        &[
+            "render",
+            "ball.nrrd",
+            "-o",
+            "a.png",
+            "--scene",
+            &case("esc-scene.toml"),
+        ],
+        2,
+    );
+    assert!(size.contains("\\u{1b}[31mx"), "{size}");
+    let transfer = [
+        "render",
+        "ball.nrrd",
+        "-o",
+        "a.png",
+        "--mode",
+        "dvr",
+        "--tf",
+    ];
+    let tf = said(&[&transfer[..], &[&case("esc-tf.toml")]].concat(), 2);
+    assert!(tf.contains("\\u{1b}[31mx\\u{1b}]0;owned\\u{7}"), "{tf}");
+    place.write("key.toml", "\"a\\u001b[31m\\nerror: b\" = 1\n");
+    let key = said(
+        &["render", "ball.nrrd", "-o", "a.png", "--scene", "key.toml"],
+        2,
+    );
+    assert!(key.contains("a\\u{1b}[31m\\nerror: b"), "{key}");
+    // Members of an archive.
+    let npz = std::fs::File::create(place.path("a.npz")).unwrap();
+    let mut npz = zip::ZipWriter::new(npz);
+    for name in ["a\u{1b}[31m\u{202e}.npy", "b\nerror: c.npy"] {
+        let options = zip::write::SimpleFileOptions::default();
+        npz.start_file(name, options).unwrap();
+    }
+    npz.finish().unwrap();
+    said(&["info", "a.npz"], 65);
+    // Names of files, there and not there.
+    std::fs::copy(place.path("ball.nrrd"), place.path(FORGED)).unwrap();
+    assert!(said(&["info", FORGED], 0).contains(&format!("file           {SHOWN}\n")));
+    let missing = format!("no{FORGED}");
+    assert!(said(&["info", &missing], 65).contains(SHOWN));
+    // Arguments, which the parser quotes.
+    for wrong in [
+        &["render", "ball.nrrd", "--mode", FORGED][..],
+        &["render", "ball.nrrd", "--size", FORGED],
+        &["render", "ball.nrrd", &format!("--{FORGED}")],
+        &["bench", FORGED],
+        &[FORGED],
+    ] {
+        assert!(said(wrong, 2).contains(SHOWN), "{wrong:?}");
+    }
+}
+
+#[test]
+fn json_on_stdout_is_the_same_value_without_what_a_terminal_obeys() {
+    let place = Place::with_ball();
+    std::fs::copy(place.path("ball.nrrd"), place.path(FORGED)).unwrap();
+    let output = place.command("info --json").arg(FORGED).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(obeyed(&text), []);
+    let info: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(info["file"], FORGED);
+}
+
 #[test]
 fn failed_jobs_are_exit_1() {
     let place = Place::with_ball();

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use angioray::frame::read_metadata;
 use angioray::report::{
-    Axis, Bar, Bars, ErrorMap, Gallery, Mark, Picture, Point, Report, Scale, Scatter, Section,
-    Shown, Table,
+    Axis, Bar, Bars, ErrorMap, Gallery, Mark, PairSetting, PairedPicture, Pairs, Picture, Point,
+    Report, Scale, Scatter, Section, Shown, Table,
 };
+use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::Value;
 
 const HOSTILE: &str = "</script><script>throw 1</script><img src=x onerror=alert(1)>\"'&amp;<!--";
@@ -198,6 +200,13 @@ fn table() -> Table {
     table
 }
 
+fn gallery(pictures: Vec<Picture>) -> Gallery {
+    Gallery {
+        pictures,
+        opens_on: None,
+    }
+}
+
 fn report() -> Report {
     let full = Section {
         title: HOSTILE.into(),
@@ -208,7 +217,9 @@ fn report() -> Report {
                 picture(HOSTILE, 100, Some(map())),
                 picture("step 2", 50, Some(map())),
             ],
+            opens_on: None,
         }),
+        pairs: None,
         scatters: vec![Scatter {
             title: HOSTILE.into(),
             x: Axis {
@@ -239,9 +250,7 @@ fn report() -> Report {
     };
     let sparse = Section {
         title: "sparse".into(),
-        gallery: Some(Gallery {
-            pictures: vec![picture("only", 90, None)],
-        }),
+        gallery: Some(gallery(vec![picture("only", 90, None)])),
         scatters: vec![
             Scatter {
                 points: vec![point("zero", "g", 1.0, 0.0, true)],
@@ -467,6 +476,325 @@ fn the_report_that_the_readme_shows_has_no_faults() {
     }
 }
 
+#[test]
+fn it_opens_on_the_picture_that_tells_most() {
+    let Some(chromium) = chromium() else { return };
+    let of = |opens_on: Option<usize>| {
+        let mut report = report();
+        report.sections[0].gallery.as_mut().unwrap().opens_on = opens_on;
+        let shown = "const pane = all('.gallery')[0]; const src = (s) => pane.querySelector(s).src; \
+                     const of = (n) => all('.picture')[n]; \
+                     return [src('.stage > img') === of(0).querySelector('img').src, \
+                     src('.layer img') === of(2).querySelector('img').src, \
+                     text('.pane:last-child figcaption b')[0]];";
+        let seen = open(&chromium, &report.html().unwrap(), shown);
+        assert_eq!(seen.faults(), [""; 0]);
+        seen.probe()
+    };
+    assert_eq!(
+        of(Some(2)),
+        serde_json::json!([true, true, "Error of step 2"])
+    );
+    // The control: without it, and with one that is not there, on the second.
+    let second = serde_json::json!([true, false, format!("Error of {HOSTILE}")]);
+    assert_eq!(of(None), second);
+    assert_eq!(of(Some(7)), second);
+}
+
+/// A page of three modes, the third of which has no setting but the reference in common.
+fn in_modes() -> Report {
+    let section = |title: &str, pictures: Vec<Picture>| Section {
+        title: title.into(),
+        gallery: Some(gallery(pictures)),
+        ..Section::default()
+    };
+    let picture = |label: &str, gray: u8| picture(label, gray, None);
+    let shown = |mode: &str, section: usize, label: &str| PairedPicture {
+        mode: mode.into(),
+        section,
+        label: label.into(),
+    };
+    let pairs = Pairs {
+        settings: vec![
+            PairSetting {
+                label: "reference".into(),
+                pictures: vec![
+                    shown("iso", 0, "reference"),
+                    shown("mip", 1, "reference"),
+                    shown(HOSTILE, 2, "reference"),
+                ],
+            },
+            PairSetting {
+                label: HOSTILE.into(),
+                pictures: vec![shown("iso", 0, HOSTILE), shown("mip", 1, HOSTILE)],
+            },
+            PairSetting {
+                label: "alone".into(),
+                pictures: vec![shown("mip", 1, "reference")],
+            },
+        ],
+    };
+    Report {
+        sections: vec![
+            section("iso", vec![picture("reference", 10), picture(HOSTILE, 20)]),
+            section("mip", vec![picture("reference", 30), picture(HOSTILE, 40)]),
+            section(HOSTILE, vec![picture("reference", 50)]),
+            Section {
+                title: "Modes side by side".into(),
+                pairs: Some(pairs),
+                ..Section::default()
+            },
+        ],
+        ..Report::default()
+    }
+}
+
+#[test]
+fn two_modes_stand_side_by_side_in_one_setting() {
+    let Some(chromium) = chromium() else { return };
+    let page = in_modes().html().unwrap();
+    let acts = "const box = all('.pairs')[0]; const find = (s) => box.querySelector(s); \
+        const pick = (s, value) => { find(s).value = value; find(s).dispatchEvent(new Event('change')); }; \
+        const number = (image) => all('.strip img').findIndex((one) => one.src === image.src); \
+        const shown = () => [...box.querySelectorAll('.pane img')].map(number); \
+        const seen = { opens: shown(), settings: text('.setting option'), modes: text('.pairs .right option') }; \
+        pick('.right', find('.right').options[2].value); seen.third = shown(); \
+        pick('.setting', 1); seen.other = shown(); \
+        seen.disabled = [...find('.right').options].map((o) => o.disabled); \
+        find('.swap').click(); seen.swapped = shown(); \
+        find('[aria-label=Larger]').click(); \
+        seen.zoomed = [...box.querySelectorAll('.pane img')].map((i) => i.style.transform); \
+        seen.captions = text('.pairs figcaption b'); \
+        const boxes = [...box.querySelectorAll('.pane')].map((p) => p.getBoundingClientRect()); \
+        seen.beside = boxes[0].right <= boxes[1].left && boxes[0].top === boxes[1].top; return seen;";
+    for window in [DESK, PHONE] {
+        let seen = open_in(&chromium, &page, acts, window, &[]);
+        assert_eq!(seen.faults(), [""; 0]);
+        let zoomed = "translate(-50%, -50%) scale(2)";
+        let expected = serde_json::json!({
+            "opens": [0, 2], "settings": ["reference", HOSTILE], "modes": ["iso", "mip", HOSTILE],
+            "third": [0, 4], "other": [1, 3], "disabled": [false, false, true], "swapped": [3, 1],
+            "zoomed": [zoomed, zoomed],
+            "captions": [format!("mip: {HOSTILE}"), format!("iso: {HOSTILE}")], "beside": true,
+        });
+        assert_eq!(seen.probe(), expected);
+    }
+    // No picture is in the page twice.
+    assert_eq!(page.matches("data:image/png").count(), 5);
+
+    // The control: a picture that no section shows is refused.
+    let mut lost = in_modes();
+    let pairs = lost.sections[3].pairs.as_mut().unwrap();
+    pairs.settings[1].pictures[0].section = 2;
+    let error = lost.html().unwrap_err().to_string();
+    assert!(
+        error.contains("no picture") && error.contains("section 2"),
+        "{error}"
+    );
+}
+
+/// Gives what of a page's text cannot be seen: cut off by its own box or by that of another, or beyond the
+/// window's edge. What can be scrolled to is there.
+const CLIPPED: &str = "const name = (e) => `${e.tagName}.${e.getAttribute('class')}: ${e.textContent.slice(0, 40)}`;
+    const scrolls = (e) => ['auto', 'scroll'].includes(getComputedStyle(e).overflowX);
+    const reachable = (e) => { for (let at = e.parentElement; at; at = at.parentElement) if (scrolls(at)) return true; return false; };
+    const visible = (e) => e.getClientRects().length && getComputedStyle(e).visibility === 'visible';
+    const hasText = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim());
+    const pen = document.createElement('canvas').getContext('2d');
+    const chosen = (e) => { const s = getComputedStyle(e); pen.font = s.font;
+      const room = e.clientWidth - parseFloat(s.paddingLeft) - parseFloat(s.paddingRight);
+      return pen.measureText(e.selectedOptions[0]?.textContent ?? '').width > room; };
+    const cut = (e) => { const s = getComputedStyle(e); if (scrolls(e)) return false;
+      return s.overflowX !== 'visible' && (e.scrollWidth > e.clientWidth + 1 || e.scrollHeight > e.clientHeight + 1); };
+    const out = (e) => { const box = e.getBoundingClientRect(); return (box.left < -0.5 || box.right > innerWidth + 0.5) && !reachable(e); };
+    const shown = all('body *').filter((e) => visible(e) && !['SCRIPT', 'STYLE'].includes(e.tagName));
+    return [...shown.filter((e) => hasText(e) && (cut(e) || out(e))), ...all('select').filter((e) => visible(e) && chosen(e)),
+      ...all('.stage').filter((e) => [...e.children].some((c) => c.matches('.tag') && visible(c)
+        && (c.getBoundingClientRect().right > e.getBoundingClientRect().right || c.scrollWidth > c.clientWidth + 1)))].map(name);";
+
+/// Names and figures as long as they get.
+fn with_long_names() -> Report {
+    let long = "VTK 9.7.2: fixed-point, step 0.5, nearest";
+    let mut report = in_modes();
+    for section in &mut report.sections[..2] {
+        let pictures = &mut section.gallery.as_mut().unwrap().pictures;
+        pictures[1].label = long.into();
+        pictures[1].error_map = Some(ErrorMap {
+            marks: vec![Mark {
+                color: [1, 2, 3],
+                meaning: "nothing there in either".into(),
+            }],
+            label: "projected value".into(),
+            unit: "% of the value range".into(),
+            ..map()
+        });
+    }
+    let pairs = report.sections[3].pairs.as_mut().unwrap();
+    pairs.settings[1].label = long.into();
+    for picture in &mut pairs.settings[1].pictures {
+        picture.label = long.into();
+    }
+    report.title =
+        "head_256x256x256_uint8_with_contrast_and_a_long_name.nrrd: speed against error".into();
+    report.command = format!(
+        "angioray compare {} -o out --modes iso,mip,dvr",
+        "x".repeat(70)
+    );
+    report.facts = vec![("Compared with".into(), "y".repeat(80))];
+    report.findings = vec![format!(
+        "iso: worth their time: {long} (12.3 ms, 1.2×10⁻⁵), {}",
+        "z".repeat(60)
+    )];
+    report.sections[0].scatters = vec![Scatter {
+        title: "Time against error of the projected value, rms".into(),
+        x: Axis {
+            label: "time of a frame".into(),
+            unit: "ms".into(),
+        },
+        y: Axis {
+            label: "error of the projected value, rms".into(),
+            unit: "% of the value range".into(),
+        },
+        points: vec![
+            point(long, long, 3.0, 1e-7, true),
+            point(
+                "b",
+                "another family of settings, with a long name",
+                900.0,
+                20.0,
+                true,
+            ),
+        ],
+    }];
+    report.sections[0].bars = Some(Bars {
+        title: "Passes of a frame, on the device's clock".into(),
+        unit: "ms".into(),
+        rows: vec![
+            Bar {
+                label: long.into(),
+                parts: vec![
+                    ("exact_surface".into(), 123_456.0),
+                    ("tone_curve".into(), 23_456.0),
+                ],
+            },
+            Bar {
+                label: "b".into(),
+                parts: vec![
+                    ("surface_normal_by_gradients".into(), 1e-5),
+                    ("x".into(), 4e4),
+                ],
+            },
+        ],
+    });
+    report.sections[0].table = Some(table());
+    report
+}
+
+#[test]
+fn nothing_is_clipped() {
+    let Some(chromium) = chromium() else { return };
+    let page = with_long_names().html().unwrap();
+    for window in [PHONE, DESK] {
+        let seen = open_in(&chromium, &page, CLIPPED, window, &[]);
+        assert_eq!(seen.faults(), [""; 0]);
+        assert_eq!(seen.probe(), serde_json::json!([]), "{window:?}");
+    }
+    // The control: pages whose style cuts something off.
+    let with = |style: &str| page.replace("</head>", &format!("<style>{style}</style></head>"));
+    let broken = [
+        (
+            "a tag on one line",
+            with(".stage .tag { white-space: nowrap; overflow: hidden; }"),
+        ),
+        (
+            "a title in the plot",
+            with(".axis.y { white-space: nowrap; }"),
+        ),
+        (
+            "a command on one line",
+            with(".command pre { white-space: pre; overflow: hidden; }"),
+        ),
+        (
+            "a narrow choice",
+            with("select { width: 90px !important; }"),
+        ),
+        (
+            "a bar too short for its figure",
+            with(".track span { max-width: 30px; }"),
+        ),
+        ("a wide section", with("h2 { width: 500px; }")),
+    ];
+    for (what, page) in broken {
+        let seen = open_in(&chromium, &page, CLIPPED, PHONE, &[]);
+        assert_ne!(seen.probe(), serde_json::json!([]), "{what} went unseen");
+    }
+}
+
+/// The pictures that a page holds, with the texts that they carry.
+fn embedded(page: &str) -> Vec<Vec<(String, String)>> {
+    let after = page.split("data:image/png;base64,").skip(1);
+    let encoded = after.map(|text| text.split(['"', '\'']).next().unwrap());
+    let decoded = encoded.map(|text| BASE64_STANDARD.decode(text).unwrap());
+    let texts = decoded.map(|png| {
+        let file = tempfile::Builder::new().suffix(".png").tempfile().unwrap();
+        fs::write(file.path(), png).unwrap();
+        read_metadata(file.path()).unwrap()
+    });
+    texts.collect()
+}
+
+/// Texts that name a place of the machine on which they were made.
+fn places(texts: &[(String, String)]) -> Vec<&str> {
+    let words = texts
+        .iter()
+        .flat_map(|(_, text)| text.split([' ', '"', '\'', '\n', '=', ',']));
+    let is_place = |word: &&str| {
+        let on_windows = word
+            .get(1..3)
+            .is_some_and(|rest| rest == ":\\" || rest == ":/");
+        (word.starts_with('/') && word.len() > 1) || on_windows || word.starts_with("file:")
+    };
+    words.filter(is_place).collect()
+}
+
+#[test]
+fn the_report_that_the_readme_shows_names_no_place_of_its_maker() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/report/report.html");
+    let page = fs::read_to_string(path).unwrap();
+    let pictures = embedded(&page);
+    assert!(pictures.len() > 10);
+    let scenes = pictures.iter().flatten().filter(|(key, _)| key == "scene");
+    assert!(scenes.clone().count() > 5);
+    for texts in &pictures {
+        assert_eq!(places(texts), [""; 0]);
+    }
+    for (_, scene) in scenes {
+        assert!(scene.contains("volume = \"vessels.nrrd\""), "{scene}");
+    }
+    let (_, command) = page.split_once("<code>").unwrap();
+    let (command, _) = command.split_once("</code>").unwrap();
+    assert_eq!(places(&[(String::new(), command.into())]), [""; 0]);
+}
+
+#[test]
+fn a_picture_that_names_a_place_is_found() {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    let scene = "mode = \"iso\"\nvolume = \"/home/someone/head.nrrd\"\n";
+    encoder
+        .add_itxt_chunk("scene".into(), scene.into())
+        .unwrap();
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0]).unwrap();
+    writer.finish().unwrap();
+    let mut report = report();
+    report.sections[0].gallery.as_mut().unwrap().pictures[1].png = bytes;
+    let pictures = embedded(&report.html().unwrap());
+    assert_eq!(pictures.len(), 6);
+    let found: Vec<&str> = pictures.iter().flat_map(|texts| places(texts)).collect();
+    assert_eq!(found, ["/home/someone/head.nrrd"]);
+}
+
 /// The checks above can fail.
 #[test]
 fn a_broken_page_is_caught() {
@@ -503,13 +831,13 @@ fn what_is_no_picture_is_refused() {
     let pictures = |report: &mut Report| report.sections[0].gallery.take().unwrap().pictures;
     let mut wrong = pictures(&mut report);
     wrong[2].png = b"GIF89a".to_vec();
-    report.sections[0].gallery = Some(Gallery { pictures: wrong });
+    report.sections[0].gallery = Some(gallery(wrong));
     let error = report.html().unwrap_err().to_string();
     assert!(error.contains("\"step 2\" is no PNG"), "{error}");
 
     let mut twice = pictures(&mut report);
     twice[2] = twice[0].clone();
-    report.sections[0].gallery = Some(Gallery { pictures: twice });
+    report.sections[0].gallery = Some(gallery(twice));
     let error = report.html().unwrap_err().to_string();
     assert!(error.contains("two pictures"), "{error}");
 }

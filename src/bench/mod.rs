@@ -41,7 +41,7 @@ use crate::frame::Wanted;
 use crate::gpu::Device;
 use crate::measure::{Times, hash_kernels, hash_program, interleaved};
 use crate::octree::{Leaf, Octree};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage, UNKNOWN_TOTAL};
 use crate::render::{Options, Renderer};
 use crate::report::{Section, Table};
 use crate::scene::Scene;
@@ -119,6 +119,10 @@ impl Bench<'_> {
         key: &str,
         compute: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
+        let compute = || {
+            let _stage = Stage::begin(self.progress, key, UNKNOWN_TOTAL);
+            compute()
+        };
         match &self.store {
             Some(store) => store.unit(key, compute),
             None => compute(),
@@ -207,18 +211,16 @@ impl Bench<'_> {
         rounds: usize,
         mut once: impl FnMut(&S, usize) -> Result<f64>,
     ) -> Result<Vec<Times>> {
-        self.progress
-            .begin("timing", (settings.len() * (rounds + 1)) as u64);
+        let frames = settings.len() * (rounds + 1);
+        let stage = Stage::begin(self.progress, "timing", frames as u64);
         let mut measured = 0;
-        let times = interleaved(settings, rounds, |setting| {
+        interleaved(settings, rounds, |setting| {
             self.check_stop()?;
-            self.progress.advance(1);
+            stage.advance(1);
             let round = measured / settings.len();
             measured += 1;
             once(setting, round)
-        });
-        self.progress.end();
-        times
+        })
     }
 }
 

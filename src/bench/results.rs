@@ -2,15 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::{self, Encoding, Format};
 use crate::output::{check_writable, write_bytes};
+use crate::report::peer_command;
 
 use super::page::report;
 use super::{Bench, Illustration, Outcome, Run};
+
+/// What the run is of, a peer's command without the folders in which it lies.
+fn passed_on(run: &Run) -> Value {
+    let mut value = run.value();
+    if let Some(Value::String(peer)) = value.get_mut("peer") {
+        *peer = peer_command(peer);
+    }
+    value
+}
 
 /// `results.csv` and `results.json` in one folder; in the end pictures and `report.html` beside them.
 pub struct Results {
@@ -69,7 +79,7 @@ impl Results {
             "command_line": bench.command,
             "experiment": bench.experiment.name,
             "finished": finished,
-            "run": run.value(),
+            "run": passed_on(run),
             "size": conduct.side_px.map(|side_px| [side_px, side_px]),
             "repeats": conduct.repeats,
             "protocol": conduct.protocol.map(|protocol| protocol.name()),

@@ -18,7 +18,7 @@ use super::load::Source;
 use super::progress::Bars;
 use super::repeat::command_line;
 use super::scene::SceneArgument;
-use super::terminal::{message, note, to_stdout};
+use super::terminal::{lines_to_stdout, message, note};
 
 /// Measure the renderer: speed against error, as a table
 #[derive(clap::Args)]
@@ -238,12 +238,12 @@ impl BenchArguments {
         }
         message(format_args!("bench {name} on {}", device.info().name));
         let outcome = (experiment.run)(&bench)?;
-        to_stdout(|out| {
-            writeln!(out, "{}", outcome.table.markdown())?;
-            outcome
-                .findings
-                .iter()
-                .try_for_each(|sentence| writeln!(out, "- {sentence}"))
+        lines_to_stdout(|out| {
+            let table = outcome.table.markdown();
+            table.iter().try_for_each(|line| out.line(line))?;
+            out.line("")?;
+            let mut findings = outcome.findings.iter();
+            findings.try_for_each(|sentence| out.line(format_args!("- {sentence}")))
         })?;
         if let Some(store) = &bench.store {
             for path in store.finish(&bench, &outcome)? {

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::gpu::Device;
 
 use super::scene::SceneArgument;
-use super::terminal::to_stdout;
+use super::terminal::lines_to_stdout;
 
 /// List the OpenCL devices
 ///
@@ -24,22 +24,20 @@ impl DevicesArguments {
     pub fn run(self) -> Result<()> {
         self.scene.open()?;
         let devices = Device::list()?;
-        to_stdout(|out| {
+        lines_to_stdout(|out| {
             for device in &devices {
-                writeln!(out, "{}  {}", device.id, device.name)?;
-                writeln!(
-                    out,
+                out.line(format_args!("{}  {}", device.id, device.name))?;
+                out.line(format_args!(
                     "   {}, {} compute units, {:.1} GiB of memory, {:.1} GiB at most in one piece",
                     device.kind,
                     device.compute_units,
                     gib(device.memory_bytes),
                     gib(device.max_allocation_bytes)
-                )?;
-                writeln!(
-                    out,
+                ))?;
+                out.line(format_args!(
                     "   {}, {}, driver {}",
                     device.platform, device.version, device.driver
-                )?;
+                ))?;
             }
             Ok(())
         })

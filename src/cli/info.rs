@@ -1,6 +1,6 @@
 //! `angioray info`.
 
-use std::io::{self, Write};
+use std::io;
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ use super::percentiles::percentiles;
 use super::progress::Bars;
 use super::scene::SceneArgument;
 use super::stats::VolumeStats;
-use super::terminal::to_stdout;
+use super::terminal::{Lines, json_to_stdout, lines_to_stdout};
 
 /// Columns of the printed histogram.
 const WIDTH: usize = 60;
@@ -59,13 +59,10 @@ impl InfoArguments {
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let info = Info::of(&source, &loaded, &octree);
         if form.json.is_some_and(Switch::is_on) {
-            return to_stdout(|out| {
-                serde_json::to_writer_pretty(&mut *out, &info)?;
-                writeln!(out)
-            });
+            return json_to_stdout(&info);
         }
         let histogram = loaded.histogram.text(WIDTH);
-        to_stdout(|out| info.print(out, histogram.trim_end()))
+        lines_to_stdout(|out| info.print(out, histogram.trim_end()))
     }
 }
 
@@ -134,10 +131,10 @@ impl Info {
         }
     }
 
-    fn print(&self, out: &mut dyn Write, histogram: &str) -> io::Result<()> {
+    fn print(&self, out: &mut Lines, histogram: &str) -> io::Result<()> {
         let volume = &self.volume;
         let triple = |each: [f64; 3]| each.map(fine).join(" ");
-        let mut row = |name: &str, value: String| writeln!(out, "{name:<14} {value}");
+        let mut row = |name: &str, value: String| out.line(format_args!("{name:<14} {value}"));
         row("file", volume.file.clone())?;
         let [nx, ny, nz] = volume.dims;
         row(
@@ -184,11 +181,9 @@ impl Info {
                 100.0 * tree.share_of_volume
             ),
         )?;
-        writeln!(
-            out,
-            "\nshare of the voxels by value, from each line's on; the bars are logarithmic"
-        )?;
-        writeln!(out, "{histogram}")
+        out.line("")?;
+        out.line("share of the voxels by value, from each line's on; the bars are logarithmic")?;
+        out.block(histogram)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The volume that the options name: read, smoothed, and as the scene sees it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::{Error, Result};
@@ -76,6 +76,11 @@ impl Source {
             },
             sigma_mm: options.smooth.map_or(0.0, SigmaMm::get),
         })
+    }
+
+    /// The file's name alone, for what is passed on.
+    pub fn name(&self) -> &Path {
+        Path::new(self.path.file_name().unwrap_or_default())
     }
 
     /// Options of a scene as pictures store them, so that they render the same volume from wherever

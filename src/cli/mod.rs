@@ -32,6 +32,7 @@ use crate::volume;
 #[derive(Parser)]
 #[command(
     name = "angioray",
+    bin_name = "angioray",
     version,
     arg_required_else_help = true,
     max_term_width = 100
@@ -75,13 +76,13 @@ pub fn main() -> ExitCode {
         Ok(arguments) => ready().and_then(|()| arguments.command.run()),
         Err(stop) => match stop.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                terminal::to_stdout(|out| write!(out, "{}", stop.render()))
+                terminal::lines_to_stdout(|out| out.block(stop.render()))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-                terminal::message(stop.render());
+                terminal::message_block(stop.render());
                 return ExitCode::from(2);
             }
-            _ => Err(misused(&stop)),
+            _ => Err(misused(&requoted(stop))),
         },
     };
     match outcome {
@@ -100,6 +101,17 @@ fn ready() -> Result<()> {
         .build_global()
         .map_err(|cause| Error::resource(format!("no threads can be started: {cause}")))?;
     volume::end_when_shortened(terminal::lines)
+}
+
+/// The parser's complaint about the arguments as they are shown: it quotes them, and a line break in one
+/// would part the complaint at the wrong places.
+fn requoted(stop: clap::Error) -> clap::Error {
+    let shown =
+        std::env::args_os().map(|argument| terminal::on_one_line(argument.to_string_lossy()));
+    match Arguments::try_parse_from(shown) {
+        Err(same) if same.kind() == stop.kind() => same,
+        _ => stop,
+    }
 }
 
 /// The parser's complaint as one line and a hint.

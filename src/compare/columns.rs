@@ -166,10 +166,10 @@ const FRAME_MS: Column = ("frame_median_ms", "ms", Shown::Fixed(2), |row| {
 const PROCESSOR_MS: Column = ("processor_median_ms", "CPU ms", Shown::Fixed(2), |row| {
     row.times_ms.processor.into()
 });
-const RMSE: Column = ("rmse", "colour rmse", Shown::Short, |row| {
+const RMSE: Column = ("rmse", "colour rmse, %", Shown::Percent(4), |row| {
     row.error.and_then(|e| Some(e.color?.rmse)).into()
 });
-const MAX: Column = ("max", "colour max", Shown::Short, |row| {
+const MAX: Column = ("max", "colour max, %", Shown::Percent(3), |row| {
     row.error.and_then(|e| Some(e.color?.max)).into()
 });
 const SSIM: Column = ("ssim", "SSIM", Shown::Fixed(5), |row| {
@@ -178,6 +178,13 @@ const SSIM: Column = ("ssim", "SSIM", Shown::Fixed(5), |row| {
 const FLIP: Column = ("flip", "FLIP", Shown::Short, |row| {
     row.error.and_then(|e| e.flip).into()
 });
+/// By which surfaces are ranked, in the findings and plots too.
+const WRONG_HITS: Column = (
+    "wrong_hits_share",
+    "missed or added, %",
+    Shown::Percent(3),
+    |row| row.error.and_then(|e| e.depth?.wrong_share()).into(),
+);
 const MISSED: Column = ("missed", "missed", Shown::Fixed(0), |row| {
     row.error.and_then(|e| Some(e.depth?.missed)).into()
 });
@@ -216,7 +223,7 @@ const REMARK: Column = ("remark", "remark", Shown::Short, |row| {
 const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into());
 
 /// What is read of a mode: of a surface its hits, of a projection its values.
-const OF_SURFACES: &[Column] = &[MISSED, EXTRA, DEPTH_P99];
+const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.
@@ -251,7 +258,8 @@ pub fn short_table(rows: &[Row]) -> Table {
 /// All modes for reading: with the mode, and the figures that matter in any of them.
 pub fn printed_table(rows: &[Row]) -> Table {
     let columns = [
-        ALL[0], NAME, FRAME_MS, MISSED, EXTRA, DEPTH_P99, VALUE_RMSE, RMSE, MAX, SSIM, FLIP,
+        ALL[0], NAME, FRAME_MS, WRONG_HITS, MISSED, EXTRA, DEPTH_P99, VALUE_RMSE, RMSE, MAX, SSIM,
+        FLIP,
     ];
     let columns: Vec<Column> = columns.into_iter().chain(remark(rows)).collect();
     table(rows, columns.iter())

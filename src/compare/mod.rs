@@ -29,9 +29,9 @@ use crate::frame::{Frame, Wanted};
 use crate::measure::{
     Peer, PeerScene, Readiness, TrueFrame, Truth, family, judge, judged_planes, scale_of,
 };
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::render::Renderer;
-use crate::report::{self, Section};
+use crate::report::{self, Gallery, Section};
 use crate::scene::{Resolved, Scene, SceneOptions, Setting, Subject};
 use crate::tolerance::{Choice, SEED, Task, ToleranceStats, choose};
 use crate::volume::Volume;
@@ -63,7 +63,7 @@ pub struct Comparison<'a> {
 #[derive(Default)]
 pub struct Compared {
     pub rows: Vec<Row>,
-    /// A section a mode.
+    /// A section a mode, then one of the modes side by side.
     pub sections: Vec<Section>,
     /// What came out, a sentence each.
     pub findings: Vec<String>,
@@ -95,6 +95,8 @@ impl Comparison<'_> {
         for of_mode in &self.modes {
             self.run_mode(of_mode.clone(), &mut compared, renderer, peers)?;
         }
+        let side_by_side = page::side_by_side(&compared.sections);
+        compared.sections.extend(side_by_side);
         Ok(compared)
     }
 
@@ -130,6 +132,8 @@ impl Comparison<'_> {
         }
         let first = compared.rows.len();
         let mut contenders = contenders(&of_mode, peers);
+        let name = format!("{mode}: pictures");
+        let stage = Stage::begin(self.progress, &name, contenders.len() as u64);
         for (number, contender) in contenders.iter_mut().enumerate() {
             let (mut row, frame) = self.contend(&of_mode, contender, &truth.frame, renderer, peers);
             let drawn = match frame {
@@ -148,7 +152,9 @@ impl Comparison<'_> {
             }
             compared.rows.push(row);
             self.folder.write_results(&self.about, compared)?;
+            stage.advance(1);
         }
+        drop(stage);
         let rows = &mut compared.rows[first..];
         self.time(&of_mode, &contenders, rows, renderer, peers)?;
         for peer in peers.iter_mut() {
@@ -166,7 +172,11 @@ impl Comparison<'_> {
             picture.error_map = Some(pictures::recolored(&self.folder, files, map)?);
         }
         let about = self.about_mode(&of_mode, &truth);
-        let section = page::section(mode, about, rows, pictures);
+        let pictured = rows.iter().filter(|row| row.files.is_some());
+        // Before them is the reference.
+        let opens_on = page::most_telling(pictured.zip(&maps)).map(|at| at + 1);
+        let gallery = Gallery { pictures, opens_on };
+        let section = page::section(mode, about, rows, gallery);
         let finding = page::finding(mode, rows);
         compared.sections.push(section);
         compared.findings.extend(finding);
@@ -242,7 +252,7 @@ impl Comparison<'_> {
                 let mut row = Row::new(of_mode.mode, setting, &contender::renderer_name(peer));
                 let frame = self.ready(peer, seen, setting).and_then(|ready| {
                     row.times_ms.prepare = Some(ready.ready_ms);
-                    row.note.clone_from(&ready.note);
+                    row.note = ready.note.as_deref().map(report::without_folders);
                     let frame = peer.render(scene.insert(ready))?.frame;
                     row.error = Some(figures(truth, &frame, scale)?);
                     Ok(frame)
@@ -298,7 +308,10 @@ impl Comparison<'_> {
         let computed = match (truth.computed, &truth.not_kept) {
             (false, _) => "kept from an earlier comparison".to_owned(),
             (true, None) => "computed for this one".to_owned(),
-            (true, Some(why)) => format!("computed for this one and could not be kept ({why})"),
+            (true, Some(why)) => format!(
+                "computed for this one and could not be kept ({})",
+                report::without_folders(&why.to_string())
+            ),
         };
         format!(
             "{pixels} rays; every setting drew {frames} in turn with the others after one to warm \

@@ -1,18 +1,22 @@
 //! A mode's part of the report.
 
+use crate::frame::error::ErrorMap;
 use crate::measure::Wrongness;
-use crate::report::{Axis, Bar, Bars, Gallery, Picture, Point, Scatter, Section, figure};
+use crate::report::{
+    Axis, Bar, Bars, Gallery, PairSetting, PairedPicture, Pairs, Point, Scatter, Section, figure,
+};
 use crate::scene::Mode;
 
 use super::columns::short_table;
 use super::row::Row;
 
 /// A mode's pictures, the reference first, its plots and its table.
-pub fn section(mode: Mode, about: String, rows: &[Row], pictures: Vec<Picture>) -> Section {
+pub fn section(mode: Mode, about: String, rows: &[Row], gallery: Gallery) -> Section {
     Section {
         title: title(mode).into(),
         about,
-        gallery: Some(Gallery { pictures }),
+        gallery: Some(gallery),
+        pairs: None,
         scatters: Wrongness::of_mode(mode)
             .iter()
             .map(|wrongness| scatter(wrongness, rows))
@@ -21,6 +25,48 @@ pub fn section(mode: Mode, about: String, rows: &[Row], pictures: Vec<Picture>) 
         bars: bars(rows),
         table: Some(short_table(rows)),
     }
+}
+
+/// Of the pictured rows and their error maps, the one to open on beside the reference, by its number: the
+/// fastest whose map shows something, else the fastest.
+pub fn most_telling<'a>(pictured: impl Iterator<Item = (&'a Row, &'a ErrorMap)>) -> Option<usize> {
+    let rank = |(at, (row, map)): (usize, (&Row, &ErrorMap))| {
+        let ms = row.frame_ms().unwrap_or(f64::INFINITY);
+        (at, !map.shows_something(), ms)
+    };
+    let ranked = pictured.enumerate().map(rank);
+    let first = ranked.min_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)));
+    first.map(|(at, ..)| at)
+}
+
+/// The modes against each other: what pictures of at least two sections are of one setting.
+pub fn side_by_side(sections: &[Section]) -> Option<Section> {
+    let mut settings: Vec<PairSetting> = Vec::new();
+    for (at, section) in sections.iter().enumerate() {
+        for picture in section.gallery.iter().flat_map(|gallery| &gallery.pictures) {
+            let shown = PairedPicture {
+                mode: section.title.clone(),
+                section: at,
+                label: picture.label.clone(),
+            };
+            match settings.iter_mut().find(|one| one.label == picture.label) {
+                Some(setting) => setting.pictures.push(shown),
+                None => settings.push(PairSetting {
+                    label: picture.label.clone(),
+                    pictures: vec![shown],
+                }),
+            }
+        }
+    }
+    settings.retain(|setting| setting.pictures.len() > 1);
+    // The sort is stable: of as many modes, in the order in which they are met.
+    settings.sort_by_key(|setting| std::cmp::Reverse(setting.pictures.len()));
+    (!settings.is_empty()).then(|| Section {
+        title: "Modes side by side".into(),
+        about: "One setting in two modes, from the same place.".into(),
+        pairs: Some(Pairs { settings }),
+        ..Section::default()
+    })
 }
 
 fn title(mode: Mode) -> &'static str {

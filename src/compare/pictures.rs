@@ -130,11 +130,13 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>> {
 
 /// An error map as the report shows it; of the colours for what is no difference, those that occur.
 fn shown(map: &ErrorMap, png: Vec<u8>) -> report::ErrorMap {
-    let low = if map.quantity.is_signed() {
-        -map.scale
-    } else {
-        0.0
+    // Shares are percentages to people, here as in the tables.
+    let (times, percent) = match map.quantity {
+        Quantity::Color | Quantity::Value => (100.0, "% "),
+        Quantity::Depth | Quantity::Normal => (1.0, ""),
     };
+    let high = times * map.scale;
+    let low = if map.quantity.is_signed() { -high } else { 0.0 };
     let marks = [
         (
             Entry::Nothing,
@@ -150,10 +152,10 @@ fn shown(map: &ErrorMap, png: Vec<u8>) -> report::ErrorMap {
     report::ErrorMap {
         png,
         label: map.quantity.name().to_owned(),
-        unit: map.quantity.unit().to_owned(),
+        unit: format!("{percent}{}", map.quantity.unit()),
         scale: report::Scale {
             stops: map.palette_stops(),
-            ..report::Scale::linear(low, map.scale, &[])
+            ..report::Scale::linear(low, high, &[])
         },
         marks: marks
             .map(|(_, color, meaning)| report::Mark {

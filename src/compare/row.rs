@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::frame::error::Figures;
 use crate::frame::{Frame, median};
 use crate::measure::{Counts, FrameTime, Judged, Times, host_peak_bytes};
+use crate::report::without_folders;
 use crate::scene::Mode;
 
 /// A row of the results; what is not known yet, or cannot be, is `None`.
@@ -126,10 +127,11 @@ impl Row {
         }
     }
 
-    /// Says why there is no picture, or no time.
+    /// Says why there is no picture, or no time. Results are passed on: without folders.
     pub fn fail(&mut self, error: &Error) {
         let hint = error.hint_text().map(|hint| format!(" ({hint})"));
-        self.failure = Some(format!("{error}{}", hint.unwrap_or_default()));
+        let why = format!("{error}{}", hint.unwrap_or_default());
+        self.failure = Some(without_folders(&why));
     }
 
     /// Takes over what a rendering cost and how wrong it is; gives its frame.

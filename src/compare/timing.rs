@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::measure::{FrameTime, Peer, PeerScene, rounds, time};
+use crate::progress::Stage;
 use crate::render::Renderer;
 
 use super::Comparison;
@@ -23,10 +24,11 @@ impl Comparison<'_> {
             .filter(|&at| rows[at].failure.is_none())
             .collect();
         let frames = sound.len() * (self.repeats + 1);
-        self.progress.begin("timing", frames as u64);
+        let name = format!("{}: timing", of_mode.mode);
+        let stage = Stage::begin(self.progress, &name, frames as u64);
         // One that fails now keeps its picture and says so.
         let times = rounds(&sound, self.repeats, |&at| {
-            self.progress.advance(1);
+            stage.advance(1);
             Ok(match &contenders[at] {
                 Contender::Setting(at) => time(renderer, &of_mode.settings[*at].1.scene),
                 Contender::Peer { peer, scene, .. } => match scene {
@@ -35,7 +37,7 @@ impl Comparison<'_> {
                 },
             })
         });
-        self.progress.end();
+        drop(stage);
         for (&at, times) in sound.iter().zip(times?) {
             match times.into_iter().collect::<Result<Vec<FrameTime>>>() {
                 Ok(times) => rows[at].timed(&times),

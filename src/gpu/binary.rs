@@ -116,7 +116,10 @@ impl Binaries {
 fn not_kept(why: impl Display) -> String {
     let folder = process::arranged().and_then(|arranged| arranged.folder().ok());
     let built_in = folder.map_or(String::new(), |folder| {
-        format!(", and built in '{}', which is removed at the end", folder.display())
+        format!(
+            ", and built in '{}', which is removed at the end",
+            folder.display()
+        )
     });
     format!("kernels are not kept from run to run ({why}){built_in}; {FOLDER} names another folder")
 }

@@ -14,6 +14,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 use crate::stop;
 
@@ -221,9 +222,8 @@ fn packed(answer: Result<Option<Vec<u8>>>) -> Vec<u8> {
 fn unpacked(bytes: &[u8]) -> Result<Answer> {
     let (code, rest) = bytes.split_first().unwrap_or((&0, &[]));
     match ErrorKind::of_exit_code(i32::from(*code)) {
-        None => Ok(binary::unpacked(rest).map_or(Answer::NotHere, |binary| {
-            Answer::Built(binary.to_owned())
-        })),
+        None => Ok(binary::unpacked(rest)
+            .map_or(Answer::NotHere, |binary| Answer::Built(binary.to_owned()))),
         // Another device has its place now.
         Some(ErrorKind::NoDevice) => Ok(Answer::NotHere),
         Some(kind) => Err(Error::new(kind, String::from_utf8_lossy(rest))),
@@ -250,12 +250,18 @@ fn last_words(said: &Path) -> String {
         .collect();
     let before = line.chars().count().saturating_sub(LAST_WORDS);
     let kept: String = line.chars().skip(before).collect();
-    if before > 0 { format!("…{kept}") } else { kept }
+    if before > 0 {
+        format!("…{kept}")
+    } else {
+        kept
+    }
 }
 
 /// Whether this process was started as a builder.
 pub fn is_asked_for() -> bool {
-    std::env::args_os().nth(1).is_some_and(|first| first == ARGUMENT)
+    std::env::args_os()
+        .nth(1)
+        .is_some_and(|first| first == ARGUMENT)
 }
 
 /// Builds the kernels that the standard input requests, as a builder, until it is closed.
@@ -268,14 +274,18 @@ pub fn serve() -> ExitCode {
         for line in std::io::stdin().lock().lines().map_while(|line| line.ok()) {
             let _ = send.send(line);
         }
-        end_at_once();
+        // Nobody wants the rest. Not by `exit`, whose handlers would meet a compiler at work.
+        abrupt::end(&[], 0);
     });
     let mut device = None;
     for (number, line) in (0..).zip(requests) {
         let bytes = packed(served(&line, &mut device));
         let (unfinished, answer) = (folder.join("unfinished"), answer_file(&folder, number));
         let written = fs::write(&unfinished, bytes);
-        if written.and_then(|()| fs::rename(&unfinished, &answer)).is_err() {
+        if written
+            .and_then(|()| fs::rename(&unfinished, &answer))
+            .is_err()
+        {
             return ExitCode::from(ErrorKind::Resource.exit_code());
         }
     }
@@ -295,17 +305,6 @@ fn served(line: &str, device: &mut Option<Device>) -> Result<Option<Vec<u8>>> {
     program::binary_of(device, &request)
 }
 
-/// Nobody wants what this process builds. Not by `exit`, whose handlers would meet a compiler at work.
-fn end_at_once() {
-    #[cfg(unix)]
-    // SAFETY: ends the process.
-    unsafe {
-        libc::_exit(0)
-    };
-    #[cfg(not(unix))]
-    std::process::abort();
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -316,7 +315,10 @@ mod tests {
         let built = unpacked(&packed(Ok(Some(binary.clone()))));
         assert_eq!(built, Ok(Answer::Built(b"code".to_vec())));
         assert_eq!(unpacked(&packed(Ok(None))), Ok(Answer::NotHere));
-        for error in [Error::resource("it does not build"), Error::failed("'a' is 'b'")] {
+        for error in [
+            Error::resource("it does not build"),
+            Error::failed("'a' is 'b'"),
+        ] {
             assert_eq!(unpacked(&packed(Err(error.clone()))), Err(error));
         }
         let elsewhere = packed(Err(Error::no_device("another")));
@@ -336,7 +338,10 @@ mod tests {
         assert_eq!(last_words(&said), "a warning; error: no  [1mld");
         fs::write(&said, [&[b'x'; 5000][..], b"\nthe end\n"].concat()).unwrap();
         let words = last_words(&said);
-        assert!(words.starts_with('…') && words.ends_with("x; the end"), "{words}");
+        assert!(
+            words.starts_with('…') && words.ends_with("x; the end"),
+            "{words}"
+        );
         assert_eq!(words.chars().count(), LAST_WORDS + 1);
     }
 

@@ -211,7 +211,9 @@ impl<'a> Plan<'a> {
             source: self.source.clone(),
             options: self.options.to_string_lossy().into_owned(),
             kernel: self.order.name.to_owned(),
-            signature: signature.map(|(a, b)| (a.to_owned(), b.to_owned())).collect(),
+            signature: signature
+                .map(|(a, b)| (a.to_owned(), b.to_owned()))
+                .collect(),
         }
     }
 

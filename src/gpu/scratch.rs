@@ -46,7 +46,9 @@ impl Scratch {
             Some("/var/tmp".into()),
         ];
         let mut places = places.into_iter().flatten();
-        places.find(|place| is_fit(place)).map(|place| Self::below(&place))
+        places
+            .find(|place| is_fit(place))
+            .map(|place| Self::below(&place))
     }
 
     /// A folder below `place`, of a name that nobody can foresee.
@@ -86,7 +88,11 @@ impl Scratch {
 
     /// Removes the folder, if it was made.
     pub fn remove(&self) {
-        let held = self.held.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let held = self
+            .held
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
         if held.is_some() {
             let _ = fs::remove_dir_all(&self.path);
         }
@@ -94,9 +100,14 @@ impl Scratch {
 
     /// Folders like this one whose processes are no more, as far as they can be removed.
     fn sweep(&self) {
-        let Some(place) = self.path.parent() else { return };
+        let Some(place) = self.path.parent() else {
+            return;
+        };
         for entry in fs::read_dir(place).into_iter().flatten().flatten() {
-            let is_like = entry.file_name().as_encoded_bytes().starts_with(PREFIX.as_bytes());
+            let is_like = entry
+                .file_name()
+                .as_encoded_bytes()
+                .starts_with(PREFIX.as_bytes());
             if is_like && entry.path() != self.path && self.is_left(&entry.path()) {
                 let _ = fs::remove_dir_all(entry.path());
             }
@@ -179,7 +190,10 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let at = |name: &str| place.path().join(name);
         let living = made_below(place.path());
-        assert_eq!(living.path().metadata().unwrap().permissions().mode() & 0o777, 0o700);
+        assert_eq!(
+            living.path().metadata().unwrap().permissions().mode() & 0o777,
+            0o700
+        );
         // Its lock went with its process.
         let dead = at("angioray-driver-dead");
         fs::create_dir(&dead).unwrap();
@@ -193,7 +207,12 @@ mod tests {
 
         let next = made_below(place.path());
         assert!(!dead.exists());
-        for stays in [living.path(), next.path(), &at("angioray-driver-new"), &at("else").join(HELD)] {
+        for stays in [
+            living.path(),
+            next.path(),
+            &at("angioray-driver-new"),
+            &at("else").join(HELD),
+        ] {
             assert!(stays.exists(), "{}", stays.display());
         }
         assert!(at("angioray-driver-link").is_symlink());
@@ -204,7 +223,11 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         assert!(is_fit(place.path()));
         fs::write(place.path().join("file"), "").unwrap();
-        for unfit in [place.path().join("file"), place.path().join("none"), PathBuf::from(".")] {
+        for unfit in [
+            place.path().join("file"),
+            place.path().join("none"),
+            PathBuf::from("."),
+        ] {
             assert!(!is_fit(&unfit), "{}", unfit.display());
         }
         if cfg!(target_os = "linux") {

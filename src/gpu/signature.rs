@@ -68,8 +68,7 @@ pub(super) fn check<'a>(
     name: &str,
     signature: impl ExactSizeIterator<Item = (&'a str, &'a str)>,
 ) -> Result<()> {
-    let does_not_tell =
-        || Error::failed(format!("the pass {name} does not tell its arguments"));
+    let does_not_tell = || Error::failed(format!("the pass {name} does not tell its arguments"));
     let KernelInfoResult::NumArgs(count) = core::get_kernel_info(kernel, KernelInfo::NumArgs)
         .map_err(|e| device_error("count a kernel's arguments", &e))?
     else {

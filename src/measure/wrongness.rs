@@ -71,15 +71,15 @@ const VALUE_RMSE: Wrongness = Wrongness {
 const COLOR_RMSE: Wrongness = Wrongness {
     key: "color_rmse",
     title: "colour error, rms",
-    unit: "of 255",
-    scale: 255.0,
+    unit: "% of white",
+    scale: 100.0,
     of: |figures| Some(figures.color?.rmse),
 };
 
 const COLOR_MAX: Wrongness = Wrongness {
     key: "color_max",
     title: "colour error, greatest",
-    unit: "of 255",
-    scale: 255.0,
+    unit: "% of white",
+    scale: 100.0,
     of: |figures| Some(figures.color?.max),
 };

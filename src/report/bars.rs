@@ -8,8 +8,11 @@ use super::figure::figure;
 /// As many colours as the style knows; further parts begin again.
 const COLORS: usize = 8;
 
-/// A part of the longest bar from which its figure fits into it, on a phone too.
-const WIDE_ENOUGH: f64 = 0.17;
+/// The part of the longest bar from which a figure of so many characters fits into it, on a phone too:
+/// where the longest has 240 pixels, a character 8, and its ends 12.
+fn wide_enough(characters: usize) -> f64 {
+    (8.0 * characters as f64 + 12.0) / 240.0
+}
 
 pub(super) fn html(bars: &Bars) -> Markup {
     let names = names(bars);
@@ -69,7 +72,7 @@ fn row_html(row: &Bar, names: &[&str], longest: f64, unit: &str) -> Markup {
                     @let n = names.iter().position(|other| *other == name).unwrap_or(0);
                     span class={ "part-" (n % COLORS) } title={ (name) ": " (figure(length)) " " (unit) }
                         style={ "width:" (format!("{:.3}", 100.0 * share)) "%" } {
-                        @if share >= WIDE_ENOUGH { (figure(length)) }
+                        @if share >= wide_enough(figure(length).chars().count()) { (figure(length)) }
                     }
                 }
                 b { (figure(row.total())) " " (unit) }

@@ -26,6 +26,7 @@ pub struct Section {
     /// A sentence or two under the title.
     pub about: String,
     pub gallery: Option<Gallery>,
+    pub pairs: Option<Pairs>,
     pub scatters: Vec<Scatter>,
     pub bars: Option<Bars>,
     pub table: Option<Table>,
@@ -36,6 +37,34 @@ pub struct Section {
 pub struct Gallery {
     /// The first is the reference that the others are held against.
     pub pictures: Vec<Picture>,
+    /// The number of the picture that the page opens on, beside the first: the one that tells most.
+    /// Without it the second.
+    pub opens_on: Option<usize>,
+}
+
+/// Pictures of two sections side by side, of one setting: such as a mode against another.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pairs {
+    /// The first is what the page opens on; those with fewer than two pictures are not shown.
+    pub settings: Vec<PairSetting>,
+}
+
+/// A setting and the pictures in it, any two of which can stand side by side.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PairSetting {
+    pub label: String,
+    pub pictures: Vec<PairedPicture>,
+}
+
+/// A picture that a gallery of the same report shows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PairedPicture {
+    /// What tells it from the others of its setting: `Isosurface`.
+    pub mode: String,
+    /// The number of the section in the report.
+    pub section: usize,
+    /// Its label in that section's gallery.
+    pub label: String,
 }
 
 /// A rendered picture, with where it is wrong.

@@ -16,11 +16,12 @@ pub(super) fn html(gallery: &Gallery) -> Result<Markup> {
         let message = format!("two pictures of the report are named \"{}\"", twice.label);
         return Err(Error::failed(message));
     }
+    let opens_on = gallery.opens_on.filter(|&at| at < gallery.pictures.len());
     let pictures = gallery.pictures.iter();
     let pictures: Vec<Markup> = pictures.map(picture_html).collect::<Result<_>>()?;
     Ok(html! {
         @if !pictures.is_empty() {
-            div.gallery.card { ol.strip { @for picture in &pictures { li { (picture) } } } }
+            div.gallery.card data-opens-on=[opens_on] { ol.strip { @for picture in &pictures { li { (picture) } } } }
         }
     })
 }

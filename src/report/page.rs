@@ -6,7 +6,7 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::content::{Report, Section};
-use super::{bars, gallery, scatter};
+use super::{bars, gallery, pairs, scatter};
 use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
@@ -25,11 +25,16 @@ const STYLES: [&str; 3] = [
 const FAULTS: &str = include_str!("page/faults.js");
 
 /// What the scripts after it share.
-const SHARED: [&str; 2] = [include_str!("page/dom.js"), include_str!("page/axis.js")];
+const SHARED: [&str; 3] = [
+    include_str!("page/dom.js"),
+    include_str!("page/axis.js"),
+    include_str!("page/magnified.js"),
+];
 
 /// In the order in which they run, each with names of its own.
-const SCRIPTS: [&str; 4] = [
+const SCRIPTS: [&str; 5] = [
     include_str!("page/viewer.js"),
+    include_str!("page/pairs.js"),
     include_str!("page/scatter.js"),
     include_str!("page/table.js"),
     include_str!("page/page.js"),
@@ -46,11 +51,12 @@ impl Report {
     /// The whole page.
     ///
     /// # Errors
-    /// A picture or an error map that is no PNG; two pictures of one gallery with one label.
+    /// A picture or an error map that is no PNG; two pictures of one gallery with one label; a pair of
+    /// a picture that no gallery shows.
     pub fn html(&self) -> Result<String> {
         let sections = self.sections.iter().enumerate();
         let sections: Vec<Markup> = sections
-            .map(|(n, section)| section_html(n, section))
+            .map(|(n, section)| section_html(n, section, &self.sections))
             .collect::<Result<_>>()?;
         let page = html! {
             (DOCTYPE)
@@ -141,9 +147,14 @@ impl Report {
     }
 }
 
-fn section_html(n: usize, section: &Section) -> Result<Markup> {
+/// The section of number `n` of a page with these `sections`.
+fn section_html(n: usize, section: &Section, sections: &[Section]) -> Result<Markup> {
     let gallery = match &section.gallery {
         Some(gallery) => gallery::html(gallery).map_err(|error| error.at(&section.title))?,
+        None => Markup::default(),
+    };
+    let pairs = match &section.pairs {
+        Some(pairs) => pairs::html(pairs, sections).map_err(|error| error.at(&section.title))?,
         None => Markup::default(),
     };
     Ok(html! {
@@ -151,6 +162,7 @@ fn section_html(n: usize, section: &Section) -> Result<Markup> {
             h2 id={ "title-" (n) } { (section.title) }
             @if !section.about.is_empty() { p.about { (section.about) } }
             (gallery)
+            (pairs)
             @if !section.scatters.is_empty() {
                 div.scatters { @for plot in &section.scatters { (scatter::html(plot)) } }
             }

@@ -44,7 +44,7 @@ fn point(point: &Point) -> Value {
 
 /// JSON that cannot end the script element it stands in: `<`, which begins `</script>` and `<!--`,
 /// only ever occurs in strings, where it may be escaped.
-fn in_script(value: &Value) -> String {
+pub(super) fn in_script(value: &Value) -> String {
     value.to_string().replace('<', "\\u003c")
 }
 

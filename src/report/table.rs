@@ -1,7 +1,5 @@
 //! Tables of results: for reading (Markdown, HTML), for programs (CSV and JSON, unrounded).
 
-use std::fmt::Write;
-
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
@@ -81,6 +79,14 @@ impl Shown {
 }
 
 impl Cell {
+    fn csv(&self) -> String {
+        match self {
+            Self::Text(text) => csv_text(text),
+            Self::Number(number) => number.to_string(),
+            Self::Nothing => String::new(),
+        }
+    }
+
     fn html(&self, heads_row: bool, shown: Shown) -> Markup {
         let (text, value) = match self {
             Self::Text(text) => (text.clone(), None),
@@ -96,6 +102,25 @@ impl Cell {
             }
         }
     }
+}
+
+/// Text as a field of a CSV file.
+fn csv_text(text: &str) -> String {
+    let formula = is_formula_like(text);
+    match formula || text.contains([',', '"', '\n', '\r']) {
+        true => {
+            let apostrophe = if formula { "'" } else { "" };
+            format!("\"{apostrophe}{}\"", text.replace('"', "\"\""))
+        }
+        false => text.to_owned(),
+    }
+}
+
+/// That a spreadsheet could take text for a formula, by how it begins (OWASP, CSV injection; the last
+/// four are the same signs in full width). A number is none, whatever its sign.
+fn is_formula_like(text: &str) -> bool {
+    const BEGINNINGS: [char; 11] = ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
+    text.starts_with(BEGINNINGS) && text.parse::<f64>().is_err()
 }
 
 /// A column: its name for programs (unit behind it), for people, and how it is read.
@@ -142,26 +167,23 @@ impl Table {
         &self.rows
     }
 
-    /// For reading; numbers rounded as their columns say.
-    pub fn markdown(&self) -> String {
-        let mut text = String::from("|");
-        for column in &self.columns {
-            let _ = write!(text, " {} |", column.title);
-        }
-        text.push_str("\n|");
-        text.push_str(&"---|".repeat(self.columns.len()));
-        for row in &self.rows {
-            text.push_str("\n|");
-            for (column, cell) in self.columns.iter().zip(row) {
-                let _ = match cell {
-                    Cell::Text(text_of) => write!(text, " {} |", text_of.replace('|', "\\|")),
-                    Cell::Number(number) => write!(text, " {} |", column.shown.text(*number)),
-                    Cell::Nothing => write!(text, " – |"),
-                };
-            }
-        }
-        text.push('\n');
-        text
+    /// For reading, a line of Markdown each; numbers rounded as their columns say.
+    pub fn markdown(&self) -> Vec<String> {
+        let line = |cells: &mut dyn Iterator<Item = String>| {
+            let cells = cells.map(|cell| format!(" {cell} |"));
+            cells.fold(String::from("|"), |line, cell| line + &cell)
+        };
+        let head = line(&mut self.columns.iter().map(|column| column.title.to_owned()));
+        let rule = format!("|{}", "---|".repeat(self.columns.len()));
+        let rows = self.rows.iter().map(|row| {
+            let cells = self.columns.iter().zip(row);
+            line(&mut cells.map(|(column, cell)| match cell {
+                Cell::Text(text) => text.replace('|', "\\|"),
+                Cell::Number(number) => column.shown.text(*number),
+                Cell::Nothing => "–".to_owned(),
+            }))
+        });
+        [head, rule].into_iter().chain(rows).collect()
     }
 
     /// A row for reading: each column's title and what the row has there; without what it has not.
@@ -225,19 +247,13 @@ impl Table {
             && !cells.any(|cell| matches!(cell, Cell::Text(_)))
     }
 
-    /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure.
+    /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure. Text that a
+    /// spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
     pub fn csv(&self) -> String {
         let keys = self.columns.iter().map(|column| column.key.to_owned());
         let mut text = keys.collect::<Vec<_>>().join(",") + "\r\n";
         for row in &self.rows {
-            let cells = row.iter().map(|cell| match cell {
-                Cell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
-                    format!("\"{}\"", text.replace('"', "\"\""))
-                }
-                Cell::Text(text) => text.clone(),
-                Cell::Number(number) => number.to_string(),
-                Cell::Nothing => String::new(),
-            });
+            let cells = row.iter().map(Cell::csv);
             text.push_str(&(cells.collect::<Vec<_>>().join(",") + "\r\n"));
         }
         text
@@ -280,7 +296,32 @@ mod tests {
     fn people_read_rounded_figures() {
         let expected = "| name | missed, % | ms |\n|---|---|---|\n\
             | a, \"b\" | 12.35 | 2.2 |\n| c\\|d | 0 | – |\n| e | 3×10⁻⁵ | – |\n";
-        assert_eq!(table().markdown(), expected);
+        assert_eq!(table().markdown().join("\n") + "\n", expected);
+    }
+
+    #[test]
+    fn a_spreadsheet_takes_no_text_for_a_formula() {
+        let field = |cell: Cell| {
+            let mut table = Table::new(&[("a", "a", Shown::Short), ("b", "b", Shown::Short)]);
+            table.push(vec![cell, "x".into()]);
+            let csv = table.csv();
+            let row = csv.strip_prefix("a,b\r\n").unwrap();
+            row.strip_suffix(",x\r\n").unwrap().to_owned()
+        };
+        for text in ["=1+1", "+a", "-a", "@SUM(1)", "\t=1", "\r=1", "\n=1", "＝1"] {
+            assert_eq!(field(text.into()), format!("\"'{text}\""));
+        }
+        let with_quotes = "=HYPERLINK(\"x\",\"y\")";
+        assert_eq!(
+            field(with_quotes.into()),
+            "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""
+        );
+        // The control: what is none, and numbers, stay as they are.
+        for text in ["1+1=2", "a-b", "-5", "+1e3", "", "'a", "a=b"] {
+            assert_eq!(field(text.into()), text);
+        }
+        assert_eq!(field((-5.25).into()), "-5.25");
+        assert_eq!(field(f64::NEG_INFINITY.into()), "-inf");
     }
 
     #[test]

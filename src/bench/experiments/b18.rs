@@ -55,13 +55,14 @@ fn run(bench: &Bench) -> Result<Outcome> {
         let slowest = found.iter().map(|one| one.times.over(&found[0].times));
         outcome.findings.push(format!(
             "{}: the picture of the slowest function takes {:.1} times as long as that of the \
-             walls; the largest colour error of any is {:.4}",
+             walls; the largest colour error of any is {:.2} % of white",
             subject.name,
             slowest.fold(1.0, f64::max),
             found
                 .iter()
                 .filter_map(|one| Some(one.light?.max))
                 .fold(0.0, f64::max)
+                * 100.0
         ));
         outcome
             .pictures

@@ -63,12 +63,12 @@ fn ending_at(mut scene: Scene, termination: f64) -> Scene {
 
 fn tell(volume: &str, found: &[Found]) -> String {
     let speedups: Vec<f64> = ways::speedups(found).map(|(ours, _)| ours).collect();
-    let max = |place: usize| found[place].light.map_or(0.0, |light| light.max);
+    let max = |place: usize| found[place].light.map_or(0.0, |light| 100.0 * light.max);
     format!(
         "{volume}: ending early is {:.2} times as fast as going to the end (paper {:.1}); with the \
          octree, which finds nothing to skip, it is {:.2} times as fast as without; the paper's 16.1 \
-         fps, for ending whole bricks, have no twin here; the largest colour error goes from {:.4} to \
-         {:.4}",
+         fps, for ending whole bricks, have no twin here; the largest colour error goes from {:.2} \
+         to {:.2} % of white",
         speedups[1],
         PAPER[1] / PAPER[0],
         found[1].times.over(&found[2].times),

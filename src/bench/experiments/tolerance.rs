@@ -12,7 +12,7 @@ use crate::frame::error::{color_error, depth_error, value_error};
 use crate::frame::{Frame, Wanted, percentile};
 use crate::measure::interleaved;
 use crate::octree::{Leaf, Octree};
-use crate::progress::Silent;
+use crate::progress::{Silent, Stage};
 use crate::reference;
 use crate::render::Renderer;
 use crate::report::{Point, Scatter, Section, Shown, Table};
@@ -93,16 +93,15 @@ fn run(bench: &Bench) -> Result<Outcome> {
 fn run_of(bench: &Bench, count: u64) -> Result<Outcome> {
     let repeats = bench.effort.repeats();
     let mut trials = Vec::new();
-    bench.progress.begin("tolerance", count);
+    let stage = Stage::begin(bench.progress, "tolerance", count);
     for number in 0..count.div_ceil(SCENES_A_VOLUME) {
         let scenes = number * SCENES_A_VOLUME..((number + 1) * SCENES_A_VOLUME).min(count);
         let key = format!("volume {number}");
         let of_volume: Vec<Trial> = bench.unit(&key, || of_volume(bench, number, scenes))?;
-        bench.progress.advance(of_volume.len() as u64);
+        stage.advance(of_volume.len() as u64);
         trials.extend(of_volume);
         bench.so_far(&outcome(&trials, repeats, &bench.device.info().name))?;
     }
-    bench.progress.end();
     Ok(outcome(&trials, repeats, &bench.device.info().name))
 }
 

@@ -9,7 +9,7 @@ use super::Found;
 pub fn section(volume: &str, case: &str, group: &[Found]) -> Section {
     let error = |found: &Found| match (&found.surface, &found.light) {
         (Some(surface), _) => surface.missed_share.map(|share| 100.0 * share),
-        (None, Some(light)) => Some(light.rmse),
+        (None, Some(light)) => Some(100.0 * light.rmse),
         (None, None) => None,
     };
     let judged: Vec<(&Found, f64)> = group
@@ -35,7 +35,7 @@ pub fn section(volume: &str, case: &str, group: &[Found]) -> Section {
     let is_surface = group.iter().any(|found| found.surface.is_some());
     let (label, unit) = match is_surface {
         true => ("missed hits", "%"),
-        false => ("colour rmse", ""),
+        false => ("colour rmse", "% of white"),
     };
     Section {
         title: format!("{volume}, {case}"),

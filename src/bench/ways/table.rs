@@ -44,8 +44,8 @@ fn table(case: &'static str, errors: Errors) -> Table {
         ]
         .as_slice(),
         Errors::Light => [
-            ("rmse", "colour rmse", Shown::Short),
-            ("max", "colour max", Shown::Short),
+            ("rmse", "colour rmse, %", Shown::Percent(4)),
+            ("max", "colour max, %", Shown::Percent(3)),
             ("ssim", "ssim", Shown::Fixed(4)),
             ("flip", "flip", Shown::Fixed(4)),
         ]

@@ -11,6 +11,7 @@ use crate::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_tab
 use crate::error::{Error, Result};
 use crate::measure::Peer;
 use crate::octree::Octree;
+use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
 use crate::scene::{Count, ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
 
@@ -18,7 +19,7 @@ use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};
 use super::progress::Bars;
 use super::scene::SceneArgument;
-use super::terminal::{message, note, to_stdout};
+use super::terminal::{lines_to_stdout, message, note};
 use options::{CompareOptions, Named};
 use page::{about, report};
 
@@ -94,7 +95,9 @@ impl CompareArguments {
             checks::bound(bound, &modes)?;
         }
         let source = Source::of(&options.volume)?;
-        let options = source.stored(options);
+        let mut options = source.stored(options);
+        // Results and pictures are passed on together: they name the volume, not its place.
+        options.volume.volume = Some(FilePath(source.name().to_owned()));
         let Engine::Device {
             device,
             options: use_of_device,
@@ -131,6 +134,8 @@ impl CompareArguments {
             notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
         }
         for peer in &mut peers {
+            let name = format!("{} loads the volume", peer.name());
+            let _stage = Stage::begin(&bars, &name, UNKNOWN_TOTAL);
             peer.load(&loaded.volume)?;
         }
         let began = Instant::now();
@@ -186,11 +191,12 @@ fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
 
 /// Says on stdout what came out, where it lies, and what failed.
 fn tell(folder: &Folder, rows: &[Row], findings: &[String]) -> Result<()> {
-    to_stdout(|out| {
-        writeln!(out, "{}", printed_table(rows).markdown())?;
-        findings
-            .iter()
-            .try_for_each(|sentence| writeln!(out, "- {sentence}"))
+    lines_to_stdout(|out| {
+        let table = printed_table(rows).markdown();
+        table.iter().try_for_each(|line| out.line(line))?;
+        out.line("")?;
+        let mut findings = findings.iter();
+        findings.try_for_each(|sentence| out.line(format_args!("- {sentence}")))
     })?;
     for path in [folder.report(), folder.json(), folder.csv()] {
         message(format_args!("wrote {}", path.display()));

@@ -24,7 +24,7 @@ pub fn about(
         "version": VERSION,
         "command": "compare",
         "command_line": command_line(),
-        "volume": VolumeStats::of(&source.path, &loaded.volume, loaded.non_finite),
+        "volume": VolumeStats::of(source.name(), &loaded.volume, loaded.non_finite),
         "device": DeviceStats::from(device.info()),
         "repeats": repeats,
         "times_ms": {
@@ -44,11 +44,7 @@ pub fn report(
     peers: &[Peer],
 ) -> Report {
     let volume = comparison.volume;
-    let name = source
-        .path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let name = source.name().display();
     let [nx, ny, nz] = volume.dims().array();
     let spacing = volume.geometry().spacing_mm();
     let info = device.info();

@@ -36,6 +36,11 @@ impl DepthError {
         self.share_of_hits(self.extra)
     }
 
+    /// Missed and extra hits together as a share of the reference's hits.
+    pub fn wrong_share(&self) -> Option<f64> {
+        self.share_of_hits(self.missed + self.extra)
+    }
+
     fn share_of_hits(&self, pixels: u64) -> Option<f64> {
         (self.reference_hits > 0).then(|| pixels as f64 / self.reference_hits as f64)
     }

@@ -117,6 +117,16 @@ impl ErrorMap {
         Ok(self)
     }
 
+    /// That it is not one colour to the eye: a hit is missed or added, or a difference reaches a
+    /// twentieth of the scale.
+    pub fn shows_something(&self) -> bool {
+        self.entries.iter().any(|entry| match entry {
+            Entry::Nothing => false,
+            Entry::Missed | Entry::Extra => true,
+            Entry::Difference(difference) => difference.abs() >= 0.05 * self.scale,
+        })
+    }
+
     /// The largest absolute difference; `None` where nothing is compared.
     pub fn largest(&self) -> Option<f64> {
         self.entries

@@ -258,10 +258,9 @@ impl Complaints {
     }
 }
 
-/// The beginning of what a peer said, fit for a line of ours.
+/// The beginning of what a peer said, as much as an error quotes.
 pub(super) fn quotable(text: &str) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
-    let mut quoted: String = text.chars().take(QUOTED_CHARS).map(plain).collect();
+    let mut quoted: String = text.chars().take(QUOTED_CHARS).collect();
     if text.chars().count() > QUOTED_CHARS {
         quoted.push('…');
     }

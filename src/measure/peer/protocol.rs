@@ -284,7 +284,7 @@ fn optional_line<'de, D: Deserializer<'de>>(
 /// A setting's name goes back to the peer, so that it is as it was said or refused.
 fn name<'de, D: Deserializer<'de>>(from: D) -> std::result::Result<String, D::Error> {
     let name = String::deserialize(from)?;
-    match quotable(&name) == name {
+    match quotable(&name) == name && !name.contains(char::is_control) {
         true => Ok(name),
         false => Err(D::Error::custom(format!(
             "the setting '{}' has too long a name, or a control character in it",

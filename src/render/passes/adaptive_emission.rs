@@ -33,31 +33,29 @@ pub fn adaptive_emission(
         .with("LANES", variant.lanes)
         .with("SHADED", switch(shaded_by.is_some()))
         .with("COUNTERS", switch(with_counters));
-    let pass = run
-        .built
-        .pass("adaptive_emission", defines, || {
-            let mut signature = vec![
-                voxels(variant),
-                input::<u8>("node_class"),
-                levels(),
-                input::<u64>("cells"),
-                input::<f32>("knot_values"),
-                input::<[f32; 4]>("knot_colors"),
-                input::<[f32; 4]>("knot_sums"),
-                DeviceClip::planes_parameter(),
-                DeviceClip::count_parameter(),
-            ];
-            signature.extend(gradient.parameters());
-            signature.extend([
-                value::<VolumeGrid>("volume"),
-                value::<RayGrid>("rays"),
-                value::<EmissionCast>("cast"),
-                value::<Shading>("shading"),
-                output::<[f32; 4]>("color"),
-            ]);
-            signature.extend(Counters::parameters(with_counters));
-            signature
-        })?;
+    let pass = run.built.pass("adaptive_emission", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            levels(),
+            input::<u64>("cells"),
+            input::<f32>("knot_values"),
+            input::<[f32; 4]>("knot_colors"),
+            input::<[f32; 4]>("knot_sums"),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
+        ];
+        signature.extend(gradient.parameters());
+        signature.extend([
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<EmissionCast>("cast"),
+            value::<Shading>("shading"),
+            output::<[f32; 4]>("color"),
+        ]);
+        signature.extend(Counters::parameters(with_counters));
+        signature
+    })?;
     let launch = run
         .voxels
         .give(pass.launch(run.device))

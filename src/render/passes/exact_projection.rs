@@ -32,28 +32,26 @@ pub fn exact_projection(
         .with("PROJECTION", format!("{}", which as u32))
         .with("LAYERS", switch(with_layers))
         .with("COUNTERS", switch(with_counters));
-    let pass = run
-        .built
-        .pass("exact_projection", defines, || {
-            let mut signature = vec![
-                voxels(variant),
-                input::<u8>("node_class"),
-                input::<[f32; 2]>("node_range"),
-                levels(),
-                DeviceClip::planes_parameter(),
-                DeviceClip::count_parameter(),
-                value::<VolumeGrid>("volume"),
-                value::<RayGrid>("rays"),
-                value::<ProjectionCast>("cast"),
-                output::<u32>("kind"),
-                output::<f32>("value"),
-            ];
-            if with_layers {
-                signature.push(output::<f32>("depth"));
-            }
-            signature.extend(Counters::parameters(with_counters));
-            signature
-        })?;
+    let pass = run.built.pass("exact_projection", defines, || {
+        let mut signature = vec![
+            voxels(variant),
+            input::<u8>("node_class"),
+            input::<[f32; 2]>("node_range"),
+            levels(),
+            DeviceClip::planes_parameter(),
+            DeviceClip::count_parameter(),
+            value::<VolumeGrid>("volume"),
+            value::<RayGrid>("rays"),
+            value::<ProjectionCast>("cast"),
+            output::<u32>("kind"),
+            output::<f32>("value"),
+        ];
+        if with_layers {
+            signature.push(output::<f32>("depth"));
+        }
+        signature.extend(Counters::parameters(with_counters));
+        signature
+    })?;
     let mut launch = run
         .voxels
         .give(pass.launch(run.device))

@@ -3,6 +3,9 @@
 function copyable(box) {
   const button = box.querySelector('.copy');
   const code = box.querySelector('code');
+  // Words stay whole where the line ends, such as a flag with its hyphens.
+  const words = code.textContent.split(' ').map((word) => element('span', {}, word));
+  code.replaceChildren(...words.flatMap((word, n) => (n ? [' ', word] : [word])));
   const told = (text) => {
     button.textContent = text;
     setTimeout(() => { button.textContent = 'Copy'; }, 2000);

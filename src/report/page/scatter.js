@@ -31,10 +31,17 @@ class Scatter {
     this.groups = [...new Set(this.points.map(({ group }) => group))];
     this.tip = element('div', { class: 'tip', role: 'status' });
     this.tip.hidden = true;
+    if (this.points.length) figure.append(...this.axisTitles());
     figure.append(...this.legend(), this.tip);
     if (!this.points.length) return;
     this.draw();
     this.listen();
+  }
+
+  /** Above and under the plot, where long ones can take two lines. */
+  axisTitles() {
+    const words = ({ label, unit }) => (unit ? `${label}, ${unit}` : label);
+    return [element('p', { class: 'axis y' }, `↑ ${words(this.y)}`), element('p', { class: 'axis x' }, `${words(this.x)} →`)];
   }
 
   legend() {
@@ -69,7 +76,7 @@ class Scatter {
       'aria-label': `${this.title}: ${this.points.length} points. Arrow keys go from point to point.`,
     });
     this.figure.querySelector(':scope > svg')?.remove();
-    this.figure.querySelector('.legend').before(drawing);
+    this.figure.querySelector('.axis.x').before(drawing);
     drawing.append(...this.grid(), ...this.front());
     this.marks = this.points.map((point, n) => this.mark(point, n));
     drawing.append(...this.marks);
@@ -80,7 +87,7 @@ class Scatter {
   layOut() {
     const positive = this.points.filter(({ y }) => y > 0);
     this.shelf = positive.length < this.points.length ? 34 : 0;
-    this.box = { left: 52, right: this.width - 10, top: 26, bottom: this.height - 46 };
+    this.box = { left: 52, right: this.width - 10, top: 10, bottom: this.height - 26 };
     const { left, right, top, bottom } = this.box;
     this.floor = bottom - this.shelf;
     // A digit is 7.5 wide, a line of text 16 high.
@@ -108,7 +115,6 @@ class Scatter {
     const text = (x, y, anchor, kind, words) => {
       if (words) parts.push(svg('text', { x, y, 'text-anchor': anchor, class: kind }, words));
     };
-    const unit = ({ label, unit: of }) => (of ? `${label}, ${of}` : label);
     if (this.shelf) parts.push(svg('rect', { x: left, y: this.floor, width: right - left, height: this.shelf, class: 'shelf' }));
     for (const { at, text: words, minor } of this.axes[0].marks) {
       const x = this.placeX(10 ** at);
@@ -123,8 +129,6 @@ class Scatter {
     }
     if (this.shelf) text(left - 8, this.placeY(0) + 4, 'end', 'tick', 'exact');
     line(left, bottom, right, bottom);
-    text(right, bottom + 38, 'end', 'title', `${unit(this.x)} →`);
-    text(0, 12, 'start', 'title', `↑ ${unit(this.y)}`);
     return parts;
   }
 

@@ -26,8 +26,17 @@ function press(table, head) {
   sort(table, head.cellIndex, ascending ? 1 : -1);
 }
 
+/** Says so where a table is wider than the window shows. */
+function tellWide() {
+  for (const box of document.querySelectorAll('.table .scroll')) {
+    box.parentElement.classList.toggle('wide', box.scrollWidth > box.clientWidth + 1);
+  }
+}
+
 for (const table of document.querySelectorAll('table.sortable')) {
   for (const head of table.tHead.rows[0].cells) {
     head.replaceChildren(button({}, head.textContent, () => press(table, head)));
   }
 }
+tellWide();
+addEventListener('resize', tellWide);

@@ -1,20 +1,18 @@
 // The viewer: two pictures of a gallery over each other, parted by a slider or taking turns, and the
 // error map of one of them beside them. All of them are moved and magnified together.
 
-const MOST_ZOOM = 32;
 const still = matchMedia('(prefers-reduced-motion: reduce)');
 
-class Viewer {
+class Viewer extends Magnified {
   constructor(gallery) {
+    super();
     this.gallery = gallery;
     this.pictures = [...gallery.querySelectorAll('.picture')].map(pictureOf);
     this.left = 0;
-    this.right = Math.min(1, this.pictures.length - 1);
+    this.right = Number(gallery.dataset.opensOn ?? Math.min(1, this.pictures.length - 1));
     this.at = 50; // the slider's place, percent of the width
     this.mode = 'slider';
     this.turn = false; // flicker: that the right picture is shown
-    this.zoom = 1;
-    this.center = [0.5, 0.5]; // what is in the middle, as a part of the picture
     this.build();
     this.show();
   }
@@ -30,10 +28,12 @@ class Viewer {
       class: 'divider', role: 'slider', tabindex: 0, 'aria-orientation': 'horizontal',
       'aria-label': 'Where the left picture ends', 'aria-valuemin': 0, 'aria-valuemax': 100,
     });
-    this.stage = this.makeStage(this.under, this.layer, ...this.tags, this.divider);
+    const { image } = this.pictures[0];
+    this.stage = this.makeStage(image, this.under, this.layer, ...this.tags, this.divider);
     this.caption = element('figcaption', { 'aria-live': 'polite' });
     this.map = element('img', { alt: '' });
-    this.mapStage = this.makeStage(this.map);
+    this.mapStage = this.makeStage(image, this.map);
+    for (const stage of [this.stage, this.mapStage]) stage.classList.toggle('single', this.single);
     this.mapCaption = element('figcaption');
     this.panes = element('div', { class: 'panes' },
       element('figure', { class: 'pane' }, this.stage, this.caption));
@@ -42,16 +42,6 @@ class Viewer {
     this.gallery.prepend(this.viewer);
     this.gallery.classList.add('live');
     this.listen();
-  }
-
-  makeStage(...children) {
-    const { width, height } = this.pictures[0].image;
-    const stage = element('div', {
-      class: 'stage', tabindex: 0, role: 'group', style: `aspect-ratio:${width}/${height}`,
-      'aria-label': 'Picture. Plus and minus magnify, arrows move what is magnified.',
-    }, ...children);
-    stage.classList.toggle('single', this.single);
-    return stage;
   }
 
   controls() {
@@ -89,21 +79,7 @@ class Viewer {
     return this.flicker;
   }
 
-  zoomControls() {
-    const zoom = (text, label, to) => button({ 'aria-label': label }, text, () => this.magnify(to()));
-    this.less = zoom('−', 'Smaller', () => this.zoom / 2);
-    this.more = zoom('+', 'Larger', () => this.zoom * 2);
-    this.factor = element('output', { 'aria-label': 'Magnification' });
-    return element('div', { class: 'joined zoom', role: 'group', 'aria-label': 'Magnification' },
-      this.less, this.factor, this.more);
-  }
-
   listen() {
-    for (const stage of [this.stage, this.mapStage]) {
-      stage.addEventListener('pointerdown', (event) => this.drag(event, stage));
-      stage.addEventListener('dblclick', (event) => this.magnifyThere(event, stage));
-      stage.addEventListener('keydown', (event) => this.key(event));
-    }
     this.divider.addEventListener('keydown', (event) => this.dividerKey(event));
     this.pictures.forEach(({ figure, label }, n) => {
       if (this.single) return;
@@ -140,46 +116,20 @@ class Viewer {
     this.show();
   }
 
-  magnify(zoom) {
-    this.zoom = clamp(zoom, 1, MOST_ZOOM);
-    this.move(0, 0);
-  }
-
-  /** Moves the middle by parts of the picture, as far as there is picture. */
-  move(x, y) {
-    const margin = 0.5 / this.zoom;
-    this.center = [this.center[0] + x, this.center[1] + y].map((c) => clamp(c, margin, 1 - margin));
-    this.show();
-  }
-
-  magnifyThere(event, stage) {
-    const [x, y] = placeIn(stage, event);
-    if (this.zoom >= MOST_ZOOM) return this.magnify(1);
-    this.center = this.center.map((c, axis) => c + ([x, y][axis] - 0.5) / this.zoom / 2);
-    return this.magnify(2 * this.zoom);
-  }
-
-  /** Follows a pointer until it is let go: the slider, or what is magnified. */
-  drag(event, stage) {
-    if (event.button > 0) return;
-    const slides = this.mode === 'slider' && !this.single && stage === this.stage
+  /** That a pointer moves the slider, not what is magnified. */
+  slides(event, stage) {
+    return this.mode === 'slider' && !this.single && stage === this.stage
       && (this.zoom === 1 || event.target === this.divider);
-    if (!slides && this.zoom === 1) {
-      if (this.mode === 'flicker' && stage === this.stage) this.flip();
-      return;
-    }
-    let last = placeIn(stage, event);
-    const follow = (moved) => {
-      const place = placeIn(stage, moved);
-      if (slides) this.slideTo(100 * place[0]);
-      else this.move((last[0] - place[0]) / this.zoom, (last[1] - place[1]) / this.zoom);
-      last = place;
-    };
-    const end = new AbortController();
-    const until = { signal: end.signal };
-    addEventListener('pointermove', follow, until);
-    for (const name of ['pointerup', 'pointercancel']) addEventListener(name, () => end.abort(), until);
-    if (slides) follow(event);
+  }
+
+  pressed(stage) {
+    if (this.mode === 'flicker' && stage === this.stage) this.flip();
+  }
+
+  spaceKey() {
+    if (this.mode !== 'flicker') return false;
+    this.flip();
+    return true;
   }
 
   /** A press shows the other picture, while they do not take turns by themselves. */
@@ -202,17 +152,6 @@ class Viewer {
     this.slideTo(this.at + steps[event.key]);
   }
 
-  key(event) {
-    const step = 0.1 / this.zoom;
-    const moves = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] };
-    const zooms = { '+': 2 * this.zoom, '=': 2 * this.zoom, '-': this.zoom / 2, 0: 1 };
-    if (event.key in zooms) this.magnify(zooms[event.key]);
-    else if (event.key in moves && this.zoom > 1) this.move(...moves[event.key]);
-    else if (event.key === ' ' && this.mode === 'flicker') this.flip();
-    else return;
-    event.preventDefault();
-  }
-
   show() {
     const [left, right] = [this.pictures[this.left], this.pictures[this.right]];
     setImage(this.under, left.image);
@@ -221,7 +160,7 @@ class Viewer {
     this.caption.replaceChildren(...[...new Set([left, right])].map(captionOf));
     this.showParting();
     this.showMap(right.map ? right : left);
-    this.showZoom();
+    this.showZoom(this.viewer, [this.under, this.over, this.map]);
     this.showControls();
     this.pictures.forEach(({ figure }, n) => figure.setAttribute('aria-current', !this.single && n === this.right));
   }
@@ -247,17 +186,6 @@ class Viewer {
     this.panes.append(this.mapPane);
   }
 
-  showZoom() {
-    const [x, y] = this.center.map((c) => 100 * (0.5 - c * this.zoom));
-    for (const image of [this.under, this.over, this.map]) {
-      image.style.transform = this.zoom === 1 ? '' : `translate(${x}%,${y}%) scale(${this.zoom})`;
-    }
-    this.viewer.classList.toggle('zoomed', this.zoom > 1);
-    this.factor.textContent = this.zoom === 1 ? 'fit' : `${this.zoom}×`;
-    this.less.disabled = this.zoom === 1;
-    this.more.disabled = this.zoom === MOST_ZOOM;
-  }
-
   showControls() {
     if (this.single) return;
     [this.picks[0].value, this.picks[1].value] = [this.left, this.right];
@@ -274,17 +202,6 @@ function pictureOf(figure) {
 
 function captionOf({ label, caption }) {
   return element('p', {}, element('b', {}, label), ` ${caption}`);
-}
-
-function setImage(image, from) {
-  if (image.shownFrom === from) return;
-  Object.assign(image, { shownFrom: from, src: from.src, alt: from.alt });
-}
-
-/** Where a pointer is in an element, as parts of its width and height. */
-function placeIn(stage, event) {
-  const box = stage.getBoundingClientRect();
-  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
 }
 
 for (const gallery of document.querySelectorAll('.gallery')) new Viewer(gallery);

@@ -61,25 +61,20 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
     };
     Source::open(path)
         .and_then(|source| read_source(source, &request))
-        .map_err(|error| one_sentence(&error).at(path.display()))
+        .map_err(|error| shortened(error).at(path.display()))
 }
 
-/// Messages quote headers, and headers may contain anything, at any length.
-fn one_sentence(error: &Error) -> Error {
+/// Messages quote headers, which may be of any length.
+fn shortened(error: Error) -> Error {
     const LONGEST: usize = 400;
     let message = error.to_string();
-    let mut sentence: String = message
-        .chars()
-        .take(LONGEST)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    if message.chars().nth(LONGEST).is_some() {
-        sentence.push('…');
-    }
-    let cleaned = Error::new(error.kind(), sentence);
+    let Some((end, _)) = message.char_indices().nth(LONGEST) else {
+        return error;
+    };
+    let short = Error::new(error.kind(), format!("{}…", &message[..end]));
     match error.hint_text() {
-        Some(hint) => cleaned.hint(hint),
-        None => cleaned,
+        Some(hint) => short.hint(hint),
+        None => short,
     }
 }
 

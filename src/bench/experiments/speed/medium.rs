@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::frame::Wanted;
 use crate::measure::time;
 use crate::render::Renderer;
+use crate::report::figure;
 use crate::scene::{Quadrature, Sampling, SamplingMethod, Scene};
 
 /// The largest error that a channel of a pixel may have.
@@ -67,14 +68,16 @@ impl Medium {
     /// A sentence for the findings.
     pub fn told(&self, volume: &str) -> String {
         let kept = match self.color_max <= BOUND {
-            true => "the fastest of those tried that keep an error of 2 of 255",
-            false => "none of those tried keeps an error of 2 of 255, this one comes nearest",
+            true => "the fastest of those tried that keep an error of 0.784 % (2 of 255)",
+            false => {
+                "none of those tried keeps an error of 0.784 % (2 of 255), this one comes nearest"
+            }
         };
         format!(
-            "{volume}, {}: {} ({:.2} of 255 in {} pixels), {kept} ({} tried)",
+            "{volume}, {}: {} ({} % of white in {} pixels), {kept} ({} tried)",
             self.look().name(),
             self.setting(),
-            255.0 * self.color_max,
+            figure(100.0 * self.color_max),
             self.judged,
             self.tried
         )

@@ -11,7 +11,9 @@ use crate::frame::{Wanted, median};
 use crate::measure::{
     Counts, FrameTime, Peer, PeerScene, PeerTime, Readiness, Times, judged_planes, rounds, time,
 };
+use crate::progress::Stage;
 use crate::render::Renderer;
+use crate::report::without_folders;
 use crate::scene::{Sampling, SamplingMethod, Scene, Storage};
 
 /// What one frame took, ms.
@@ -199,12 +201,10 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
         None => frames_of(bench.effort, contenders, &mut renderer)?,
     };
     let mut measured = 0;
-    bench
-        .progress
-        .begin("timing", (turns.len() * (count + 1)) as u64);
+    let stage = Stage::begin(bench.progress, "timing", (turns.len() * (count + 1)) as u64);
     let taken = rounds(&turns, count, |turn| {
         bench.check_stop()?;
-        bench.progress.advance(1);
+        stage.advance(1);
         // The first round warms up.
         let round = (measured / turns.len()).saturating_sub(1);
         measured += 1;
@@ -218,7 +218,7 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
             (Turn::Peer(..), None) => return Err(Error::failed("a peer has ended too early")),
         })
     });
-    bench.progress.end();
+    drop(stage);
     for (row, taken) in rows.iter_mut().zip(taken?) {
         row.taken = taken;
     }
@@ -305,7 +305,7 @@ fn rival(
         setting: setting.clone(),
         samples: None,
         wrong: Some(truth.wrong(mode, &frame)?),
-        note: scene.note.clone(),
+        note: scene.note.as_deref().map(without_folders),
         taken: Vec::new(),
     };
     Ok(Some((row, scene)))

@@ -43,7 +43,7 @@ fn scatter(look: Look, rows: &[&Raced]) -> Scatter {
     Scatter {
         title: format!("{}: time against error of the colour", look.name()),
         x: axis("whole frame, median", "ms"),
-        y: axis("colour rmse", "%"),
+        y: axis("colour rmse", "% of white"),
         points: points.collect(),
     }
 }

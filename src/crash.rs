@@ -6,11 +6,8 @@
 
 use std::path::Path;
 
-/// What the process exits with when such a signal ends it, as [`crate::error::ErrorKind::Resource`].
-pub const EXIT_CODE: i32 = 74;
-
 /// From now on SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and
-/// [`EXIT_CODE`]. For the program's `main`: a library leaves signals to the program that uses it.
+/// the exit code of a resource that failed. For the program's `main`: a library leaves signals to the program that uses it.
 pub fn catch() {
     #[cfg(unix)]
     signals::catch();
@@ -38,9 +35,10 @@ mod signals {
     use std::os::unix::ffi::OsStrExt;
     use std::path::Path;
     use std::ptr::null_mut;
-    use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 
-    use super::EXIT_CODE;
+    use crate::abrupt;
+    use crate::error::ErrorKind;
 
     /// With their names, each with a NUL at its end.
     const SIGNALS: [(c_int, &CStr); 5] = [
@@ -59,7 +57,6 @@ mod signals {
     static SUSPECTS: [AtomicPtr<c_char>; MOST_SUSPECTS] =
         [const { AtomicPtr::new(null_mut()) }; MOST_SUSPECTS];
     static SUSPECTS_SET: AtomicUsize = AtomicUsize::new(0);
-    static ENDING: AtomicBool = AtomicBool::new(false);
 
     pub fn catch() {
         for (signal, _) in SIGNALS {
@@ -94,49 +91,41 @@ mod signals {
         }
     }
 
-    /// Ends the process. Another thread that is struck meanwhile waits for that.
+    /// Ends the process in words.
     extern "C" fn end(signal: c_int) {
-        if ENDING.swap(true, Ordering::AcqRel) {
-            loop {
-                // SAFETY: a handler may wait.
-                unsafe { libc::pause() };
-            }
-        }
         let name = SIGNALS.iter().find(|(number, _)| *number == signal);
-        say(c"error: the process was ended by ");
-        say(name.map_or(c"a signal", |(_, name)| name));
+        let name = name.map_or(c"a signal", |(_, name)| name);
         let clause = CLAUSE.load(Ordering::Acquire);
-        if !clause.is_null() {
-            say(c" while ");
-            // SAFETY: it came from a CString that is never freed.
-            say(unsafe { CStr::from_ptr(clause) });
-        }
-        say(c"\n");
         let mut removed = false;
         for slot in &SUSPECTS {
             let path = slot.load(Ordering::Acquire);
             if !path.is_null() {
-                // SAFETY: as above; a handler may remove a file.
+                // SAFETY: it came from a CString that is never freed; a handler may remove a file.
                 removed |= unsafe { libc::unlink(path) } == 0;
             }
         }
-        say(match (removed, clause.is_null()) {
+        let (while_, clause) = match clause.is_null() {
+            true => ("", c""),
+            // SAFETY: as above.
+            false => (" while ", unsafe { CStr::from_ptr(clause) }),
+        };
+        let hint = match (removed, while_.is_empty()) {
             (true, _) => {
-                c"hint: the kept kernels that were in use are removed: the same command builds them again\n"
+                "hint: the kept kernels that were in use are removed: the same command builds them again\n"
             }
             (false, false) => {
-                c"hint: its driver failed, or memory ran out: '--device reference' needs no driver\n"
+                "hint: its driver failed, or memory ran out; '--device reference' needs no driver\n"
             }
-            (false, true) => c"hint: memory may have run out; else this is a fault of the program\n",
-        });
-        // SAFETY: ends the process at once, as a handler may.
-        unsafe { libc::_exit(EXIT_CODE) };
-    }
-
-    /// To standard error, unbuffered. Where it is closed nobody reads.
-    fn say(text: &CStr) {
-        let bytes = text.to_bytes();
-        // SAFETY: the pointer and the length are those of `bytes`.
-        unsafe { libc::write(libc::STDERR_FILENO, bytes.as_ptr().cast(), bytes.len()) };
+            (false, true) => "hint: this is a fault of the program, or memory ran out\n",
+        };
+        let words = [
+            b"error: the process was ended by ",
+            name.to_bytes(),
+            while_.as_bytes(),
+            clause.to_bytes(),
+            b"\n",
+            hint.as_bytes(),
+        ];
+        abrupt::end(&words, ErrorKind::Resource.exit_code());
     }
 }

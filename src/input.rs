@@ -40,7 +40,7 @@ pub fn text(path: &Path, doing: &str) -> Result<String> {
 /// # Errors
 /// Those of opening.
 #[cfg(unix)]
-fn open(path: &Path) -> io::Result<File> {
+pub fn open(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
 
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
@@ -54,8 +54,12 @@ fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Opens a file for reading.
+///
+/// # Errors
+/// Those of opening.
 #[cfg(not(unix))]
-fn open(path: &Path) -> io::Result<File> {
+pub fn open(path: &Path) -> io::Result<File> {
     OpenOptions::new().read(true).open(path)
 }
 

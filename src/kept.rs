@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use crate::error::{Error, Result};
+use crate::input;
 use crate::output::write_atomically;
 
 /// Files that nobody asked for in so long are removed.
@@ -60,14 +61,7 @@ impl Kept {
 /// # Errors
 /// There is no such file, or it cannot be read.
 pub fn open(path: &Path) -> io::Result<File> {
-    let mut options = File::options();
-    options.read(true);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::OpenOptionsExt;
-        options.custom_flags(libc::O_NONBLOCK);
-    }
-    let file = options.open(path)?;
+    let file = input::open(path)?;
     if file.metadata()?.is_file() {
         Ok(file)
     } else {

@@ -14,6 +14,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 use crate::stop;
 
@@ -273,7 +274,8 @@ pub fn serve() -> ExitCode {
         for line in std::io::stdin().lock().lines().map_while(|line| line.ok()) {
             let _ = send.send(line);
         }
-        end_at_once();
+        // Nobody wants the rest. Not by `exit`, whose handlers would meet a compiler at work.
+        abrupt::end(&[], 0);
     });
     let mut device = None;
     for (number, line) in (0..).zip(requests) {
@@ -301,17 +303,6 @@ fn served(line: &str, device: &mut Option<Device>) -> Result<Option<Vec<u8>>> {
         return Err(Error::no_device("another device has its place"));
     }
     program::binary_of(device, &request)
-}
-
-/// Nobody wants what this process builds. Not by `exit`, whose handlers would meet a compiler at work.
-fn end_at_once() {
-    #[cfg(unix)]
-    // SAFETY: ends the process.
-    unsafe {
-        libc::_exit(0)
-    };
-    #[cfg(not(unix))]
-    std::process::abort();
 }
 
 #[cfg(test)]

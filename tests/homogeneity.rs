@@ -233,11 +233,11 @@ fn averaging_nothing_or_little_takes_no_more_samples() {
             if !emission.quadrature.is_stepped() {
                 continue;
             }
-            let mut render = |limit| {
+            let mut render = |limit: Option<f64>| {
                 let homogeneity = limit.map(|limit| Homogeneity { rule, limit });
                 counted(&mut renderer, &volume, &emission, homogeneity)
             };
-            let (off, fine, coarse) = (render(None), render(Some(1e-6)), render(Some(0.5)));
+            let (off, fine, coarse) = (render(None), render(Some(1e-6)), render(Some(1.0)));
             let [off_samples, fine_samples] = [&off, &fine].map(|frame| total(&frame.steps));
             if same == 0.0 {
                 assert!(fine == off, "{method}");

@@ -89,9 +89,9 @@ fn mean_of_slab(kappa: f64, length: f64) -> f64 {
 
 #[test]
 fn a_homogeneous_slab_is_where_its_integral_says() {
-    let slab = volume_of([13, 4, 4], |_, _, _| 3.0_f32);
-    for opacity in [0.005, 0.1, 0.6] {
-        let kappa = -(-opacity as f64).ln_1p() / 2.0;
+    let slab = volume_of([13, 4, 4], |_, _, _| 3_u8);
+    for opacity in [0.005_f64, 0.1, 0.6] {
+        let kappa = -(-opacity).ln_1p() / 2.0;
         let depth = before_mm(&slab) + mean_of_slab(kappa, 12.0);
         for (rule, seen) in along_x(&slab, &transfer(&[(0.0, opacity)], 2.0), 1.3) {
             let limit = match rule.as_str() {
@@ -119,8 +119,8 @@ fn a_homogeneous_slab_is_where_its_integral_says() {
 
 #[test]
 fn what_is_hardly_seen_has_no_layers() {
-    let slab = volume_of([13, 4, 4], |_, _, _| 3.0_f32);
-    for (share, kind) in [(0.99, 0), (1.01, 1)] {
+    let slab = volume_of([13, 4, 4], |_, _, _| 3_u8);
+    for (share, kind) in [(0.99_f64, 0), (1.01, 1)] {
         let opacity = 1.0 - (1.0 - 0.01 * share).powf(1.0 / 12.0);
         for (rule, seen) in along_x(&slab, &transfer(&[(0.0, opacity)], 1.0), 0.5) {
             assert_eq!(seen.kind, kind, "{rule}: {seen:?}");
@@ -136,7 +136,7 @@ fn what_is_hardly_seen_has_no_layers() {
 /// Two sheets where a ramp has the values 3.3 and 8.6: the mean of their places, each by its light.
 #[test]
 fn two_thin_sheets_have_the_mean_of_their_places() {
-    let ramp = volume_of([13, 4, 4], |x, _, _| x as f32);
+    let ramp = volume_of([13, 4, 4], |x, _, _| x as u8);
     let (half, opacity) = (0.02, 0.45_f64);
     let band = |at: f64| {
         [
@@ -172,11 +172,11 @@ fn a_plane_has_its_normal_from_everywhere() {
     let Some(device) = common::device() else {
         return;
     };
-    let slope = DVec3::new(2.0, -1.0, 0.5);
+    let slope = DVec3::new(-2.0, 1.0, -1.0); // rises away from the eye
     let plane = volume_of([16, 15, 14], |x, y, z| {
-        (slope.dot(DVec3::new(x, y, z)) + 20.0) as f32
+        (slope.dot(DVec3::new(x, y, z)) + 50.0) as u8
     });
-    let tf = transfer(&[(25.0, 0.0), (30.0, 0.3), (50.0, 0.3)], 1.0);
+    let tf = transfer(&[(33.0, 0.0), (35.0, 0.95)], 1.0);
     let picture = |method| {
         Picture::Emission(Emission {
             quadrature: Quadrature::of(method),
@@ -198,76 +198,73 @@ fn a_plane_has_its_normal_from_everywhere() {
             .map(|(_, n)| DVec3::from_array(n.map(f64::from)))
             .collect();
         assert!(seen.len() > 100, "{}", seen.len());
-        // But for pixels whose rays graze the volume's faces, where differences are one-sided.
+        // But for rays that meet it where it comes to the volume's faces: differences there are one-sided.
         let exact = seen.iter().filter(|n| n.distance(normal) < 1e-4).count();
-        assert!(exact * 2 > seen.len(), "{exact} of {}", seen.len());
+        assert!(exact * 3 > seen.len(), "{exact} of {}", seen.len());
         assert!(seen.iter().all(|n| (n.length() - 1.0).abs() < 1e-5));
         let turned = seen.iter().filter(|n| n.distance(slope.normalize()) < 1e-4);
         assert_eq!(turned.count(), 0);
     }
 }
 
-/// Every rule, shaded and not, with either filter, with leaves that are homogeneous and without.
+/// Every rule; some shaded, with the nearest filter, with leaves that are homogeneous.
 fn emissions(volume: &Volume) -> Vec<Scene> {
     let tf = transfer(&[(60.0, 0.0), (140.0, 0.4), (220.0, 0.9)], 2.0);
-    let mut scenes = Vec::new();
-    for method in QuadratureMethod::ALL {
-        let quadrature = Quadrature::of(method);
-        for phong in [None, Some(Phong::default())] {
-            for homogeneity in [
-                None,
-                Some(Homogeneity {
-                    rule: HomogeneityRule::Range,
-                    limit: 0.1,
-                }),
-            ] {
-                if homogeneity.is_some() && (phong.is_some() || !quadrature.is_stepped()) {
-                    continue;
-                }
-                let emission = Emission {
-                    phong,
-                    quadrature,
-                    homogeneity,
-                    ..Emission::of(tf.clone())
-                };
-                for filter in [Filter::Linear, Filter::Nearest] {
-                    let mut scene = common::scene(volume, 32, Picture::Emission(emission.clone()));
-                    scene.sampling.filter = filter;
-                    scenes.push(scene);
-                }
-            }
-        }
+    let scene = |method, phong, limit: Option<f64>, filter| {
+        let rule = HomogeneityRule::Range;
+        let emission = Emission {
+            phong,
+            quadrature: Quadrature::of(method),
+            homogeneity: limit.map(|limit| Homogeneity { rule, limit }),
+            ..Emission::of(tf.clone())
+        };
+        let mut scene = common::scene(volume, 32, Picture::Emission(emission));
+        scene.sampling.filter = filter;
+        scene
+    };
+    let plain = |method| scene(method, None, None, Filter::Linear);
+    let mut scenes = QuadratureMethod::ALL.map(plain).to_vec();
+    for method in [QuadratureMethod::Simpson, QuadratureMethod::Adaptive] {
+        scenes.push(scene(method, Some(Phong::default()), None, Filter::Linear));
+        scenes.push(scene(method, None, None, Filter::Nearest));
     }
+    let preintegrated = QuadratureMethod::Preintegrated;
+    scenes.push(scene(preintegrated, None, None, Filter::Nearest));
+    scenes.push(scene(
+        QuadratureMethod::Simpson,
+        None,
+        Some(0.1),
+        Filter::Linear,
+    ));
     scenes
 }
 
-/// Each layer, or pair of them that is made together, alone.
-const ALONE: [Wanted; 3] = {
-    let none = Wanted {
-        display: false,
-        depth: false,
-        normal: false,
-        value: false,
-        counters: false,
-        kind: false,
-        certificate: false,
-    };
-    [
-        Wanted {
-            depth: true,
-            ..none
-        },
-        Wanted {
-            normal: true,
-            ..none
-        },
-        Wanted {
-            value: true,
-            kind: true,
-            ..none
-        },
-    ]
+const NONE: Wanted = Wanted {
+    display: false,
+    depth: false,
+    normal: false,
+    value: false,
+    counters: false,
+    kind: false,
+    certificate: false,
 };
+
+/// Each layer, or those that are made together, alone.
+const ALONE: [Wanted; 3] = [
+    Wanted {
+        depth: true,
+        ..NONE
+    },
+    Wanted {
+        normal: true,
+        ..NONE
+    },
+    Wanted {
+        value: true,
+        kind: true,
+        ..NONE
+    },
+];
 
 #[test]
 fn wanting_layers_changes_no_bit_of_the_colours_and_no_sample() {
@@ -280,20 +277,20 @@ fn wanting_layers_changes_no_bit_of_the_colours_and_no_sample() {
     });
     let octree: Octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let counted = Wanted {
-        counters: true,
-        ..Wanted::default()
-    };
-    for scene in emissions(&volume) {
-        let mut render = |wanted| renderer.render(&scene, wanted).unwrap().frame;
-        let plain = render(counted);
-        assert!(plain.depth.is_none() && plain.kind.is_none());
-        let all = render(Wanted::ALL);
+    for (n, scene) in emissions(&volume).iter().enumerate() {
+        let mut render = |wanted| renderer.render(scene, wanted).unwrap().frame;
+        let (plain, all) = (render(NONE), render(Wanted::ALL));
         let what = format!("{:?} {:?}", scene.picture, scene.sampling.filter);
-        assert!(
-            plain.color == all.color && plain.steps == all.steps,
-            "{what}"
-        );
+        assert!(plain.depth.is_none() && plain.kind.is_none());
+        assert!(plain.color == all.color, "{what}");
+        if QuadratureMethod::ALL.get(n) != Some(&QuadratureMethod::Simpson) {
+            continue;
+        }
+        let counted = render(Wanted {
+            counters: true,
+            ..NONE
+        });
+        assert!(counted.steps == all.steps, "{what}");
         for wanted in ALONE {
             let alone = render(wanted);
             assert!(alone.color == all.color, "{what}");

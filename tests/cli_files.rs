@@ -194,7 +194,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
         std::fs::remove_file(place.path(&format!("{folder}/b.png"))).unwrap();
     };
     // Where the picture says; then beside the picture, wherever that is.
-    done("", "replay sub/a.png -o b.png");
+    done(".", "replay sub/a.png -o b.png");
     done("far", "replay ../sub/a.png -o b.png");
     std::fs::rename(place.path("sub/a.png"), place.path("moved/a.png")).unwrap();
     // Nowhere, then in the working folder.
@@ -334,9 +334,9 @@ fn a_scene_is_read_from_a_pipe_too() {
 fn a_missing_folder_is_said_before_the_volume_is_read() {
     let place = Place::empty();
     // The volume is missing too; what is checked first is what is said.
-    let said = place.refused("render none.nrrd -o no/a.png --device reference", 1);
+    let said = place.refused("render none.nrrd -o no/a.png --device reference", 74);
     assert!(said.contains("no/a.png"), "{said}");
-    let said = place.refused("render none.nrrd -o a.png --device reference", 1);
+    let said = place.refused("render none.nrrd -o a.png --device reference", 65);
     assert!(said.contains("none.nrrd"), "{said}");
 }
 
@@ -349,12 +349,12 @@ fn a_folder_that_takes_no_files_is_said_before_the_volume_is_read() {
         "render none.nrrd -o a.png --stats /proc/a.json",
         "phantom sphere -o /proc/a.nrrd",
     ] {
-        let said = place.refused(line, 1);
+        let said = place.refused(line, 74);
         assert!(said.contains("'/proc' takes no files"), "{said}");
         assert!(!said.contains("mkdir"), "{said}");
     }
     // The control: a missing folder has its cure.
-    let said = place.refused("render none.nrrd -o no/a.png", 1);
+    let said = place.refused("render none.nrrd -o no/a.png", 74);
     assert!(said.contains("mkdir -p 'no'"), "{said}");
 }
 
@@ -376,7 +376,7 @@ fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
     let place = Place::empty();
     std::fs::create_dir(place.path("a.tree.json")).unwrap();
     // What is checked first is what is said: this tree cannot be grown either.
-    let said = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 1);
+    let said = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 74);
     assert!(said.contains("a.tree.json"), "{said}");
     // The controls: another name has another tree, another kind has none.
     let said = place.refused("phantom vessels -o b.nrrd --size 16 --radius -1", 2);

@@ -271,7 +271,7 @@ fn what_is_done_before_a_failure_is_kept() {
     let place = Place::with_ball();
     fs::create_dir_all(place.path("out/pictures/mip-02-step-2.png")).unwrap();
     let output = place.run(&format!("{SMALL} --modes iso,mip {device}"));
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(74));
     assert!(
         stderr(&output).contains("mip-02-step-2.png"),
         "{}",
@@ -327,7 +327,7 @@ fn wrong_usage_is_refused_before_the_work() {
         ),
         (
             "compare ball.nrrd -o out --configs none.toml",
-            1,
+            65,
             "none.toml",
         ),
         (

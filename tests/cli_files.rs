@@ -199,7 +199,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
         std::fs::remove_file(place.path(&format!("{folder}/b.png"))).unwrap();
     };
     // Where the picture says; then beside the picture, wherever that is.
-    done("", "replay sub/a.png -o b.png");
+    done(".", "replay sub/a.png -o b.png");
     done("far", "replay ../sub/a.png -o b.png");
     std::fs::rename(place.path("sub/a.png"), place.path("moved/a.png")).unwrap();
     // Nowhere, then in the working folder.

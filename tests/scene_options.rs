@@ -77,7 +77,7 @@ fn thresholds_are_values_shares_or_otsu() {
     let third = resolved(&flags(&["--mode", "mip", "--window", "33.3%,90%"]));
     assert_eq!(third.notes, ["window = 33.3%,90% is 33.2,260"]);
     assert_ne!((0.333_f64 * 400.0 - 100.0).to_string(), "33.2");
-    assert!(resolved(&flags(&["--iso", "301"])).notes[0].contains("outside"));
+    assert!(resolved(&flags(&["--iso", "301"])).notes[0].contains("above"));
     assert!(resolved(&flags(&["--iso", "30"])).notes.is_empty());
     let lmip = resolved(&flags(&["--mode", "lmip", "--lmip-threshold", "50%"]));
     let Picture::Projection { of, .. } = lmip.scene.picture else {
@@ -411,7 +411,7 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
         ("raw-spacing", "0.5", ["0", "1,2", "-1,1,1"]),
         ("color", "#A0b1c2", ["#12345", "1,1", "#gggggg"]),
         ("size", "640x480", ["0", "4x", "70000x70000"]),
-        ("mode", "minip", ["MIP", "", "xray"]),
+        ("mode", "minip", ["mip2", "", "xray"]),
         ("refine", "illinois:3", ["newton:0", "secant", "none:3"]),
         ("window", "otsu,90%", ["5", "0,1e39", ""]),
     ] {

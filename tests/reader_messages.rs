@@ -37,7 +37,6 @@ fn what_is_not_supported_is_said() {
     }
     assert!(refusal("np_complex.npy").contains("<c8"));
     assert!(refusal("np_none.npz").contains("spacing [3]"));
-    assert!(refusal("negative.mha").contains("spacing"));
 }
 
 #[test]
@@ -176,5 +175,5 @@ fn an_extreme_calibration_is_kept_or_refused() {
     // The same header, another slope: the figures above are not there by themselves.
     assert_ne!(with_slope(-1.0).unwrap(), range);
     // Beyond single precision there is no picture to be had.
-    assert_eq!(with_slope(-3e38).unwrap_err().exit_code(), 1);
+    assert_eq!(with_slope(-3e38).unwrap_err().exit_code(), 65);
 }

@@ -9,8 +9,8 @@ use angioray::error::ErrorKind;
 use angioray::extent::Dims;
 use angioray::progress::Silent;
 use angioray::volume::{
-    Geometry, NonFinite, PhantomKind, ReadOptions, Rescale, Volume, VoxelType, Voxels, phantom, read,
-    write_nrrd,
+    Geometry, NonFinite, PhantomKind, ReadOptions, Rescale, Volume, VoxelType, Voxels, phantom,
+    read, write_nrrd,
 };
 use flate2::read::GzDecoder;
 use glam::{DMat3, DVec3};
@@ -192,7 +192,7 @@ fn a_failed_write_leaves_nothing_behind() {
         "".into(),
     ] {
         let error = write_nrrd(&volume, &path, false).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Failed, "{error}");
+        assert_eq!(error.kind(), ErrorKind::Resource, "{error}");
     }
     assert_eq!(entries(), 1);
     write_nrrd(&volume, &folder.path().join("good.nrrd"), true).unwrap();

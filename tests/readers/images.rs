@@ -130,3 +130,9 @@ fn slope_and_intercept_make_physical_values() {
     let rising = read_fixture("slope_rising.nii", &ReadOptions::default());
     assert_eq!(rising.voxels().voxel_type(), VoxelType::U8);
 }
+
+#[test]
+fn a_negative_spacing_is_an_axis_turned_round() {
+    let turned = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+    Expected::placed(turned).check("negative.mha");
+}

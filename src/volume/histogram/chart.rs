@@ -36,7 +36,10 @@ fn short(value: f64, range: Range) -> String {
         3
     };
     let magnitude = range.min.abs().max(range.max.abs());
-    if magnitude >= 1e9 || (magnitude > 0.0 && magnitude < 1e-6) {
+    // With an exponent, values far from zero would all look alike.
+    let is_far = magnitude < 1e12 && range.width() < 1e-3 * magnitude;
+    let is_large = magnitude >= 1e9 && !is_far;
+    if is_large || (magnitude > 0.0 && magnitude < 1e-6) {
         format!("{value:.3e}")
     } else {
         format!("{value:.decimals$}")
@@ -46,6 +49,24 @@ fn short(value: f64, range: Range) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::tests::histogram;
+    use super::*;
+
+    #[test]
+    fn edges_far_from_zero_are_told_apart() {
+        let edges = |min: f64, max: f64| -> Vec<String> {
+            let range = Range { min, max };
+            let counts = vec![1; 16];
+            let text = Histogram { range, counts }.text(60);
+            let first = |line: &str| line.split_whitespace().next().unwrap_or("").to_owned();
+            let mut edges: Vec<String> = text.lines().map(first).collect();
+            edges.dedup();
+            edges
+        };
+        assert_eq!(edges(1e9, 1e9 + 102.6).len(), 16);
+        assert_eq!(edges(1e9, 1e9 + 102.6)[8], "1000000051.3");
+        // The control: a range that begins at zero is short with an exponent.
+        assert_eq!(edges(0.0, 1.6e10)[1], "1.000e9");
+    }
 
     #[test]
     fn the_chart_keeps_to_its_width() {

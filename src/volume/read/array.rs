@@ -112,7 +112,7 @@ impl Array {
         let (mut reader, at_most) = payload.into_reader();
         if at_most < total {
             return Err(Error::input(format!(
-                "{total} bytes of voxels announced, but the data there cannot hold more than {at_most}"
+                "{total} bytes of voxels announced, but the data cannot hold more than {at_most}"
             )));
         }
         let read = |reader: &mut dyn Read| {

@@ -166,7 +166,7 @@ impl Payload {
     /// Bytes written as pairs of hexadecimal digits.
     pub(super) fn hex(self) -> Self {
         let (reader, length) = self.into_reader();
-        Self::stream(HexBytes(reader), length / 2)
+        Self::stream(HexBytes(reader), length)
     }
 
     /// Without the first `count` bytes.

@@ -6,16 +6,17 @@ use std::time::Instant;
 
 use crate::VERSION;
 use crate::error::{Error, Result};
+use crate::extent::Dims;
 use crate::frame::{Frame, Wanted};
 use crate::gpu::Device;
 use crate::octree::Octree;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
-use crate::render::{GradientFigures, Lanes, Options, Renderer};
+use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
-use crate::volume::Volume;
+use crate::volume::{Volume, VoxelType};
 
 use super::load::{Source, ms_since};
 use super::progress::Bars;
@@ -165,6 +166,17 @@ impl Engine {
         }
     }
 
+    /// That what renders can hold such a volume, as far as its size says.
+    ///
+    /// # Errors
+    /// The device is too small.
+    pub fn check_volume(&self, dims: Dims, voxel: VoxelType) -> Result<()> {
+        match self {
+            Self::Reference => Ok(()),
+            Self::Device { device, .. } => check_volume(device.info(), dims, voxel),
+        }
+    }
+
     /// What the device needs of the volume, besides the volume: nothing where the reference
     /// renders.
     pub fn prepare(
@@ -176,6 +188,7 @@ impl Engine {
         match self {
             Self::Reference => Ok(Prepared::Nothing),
             Self::Device { .. } => {
+                self.check_volume(volume.dims(), volume.voxels().voxel_type())?;
                 let began = Instant::now();
                 let octree = Octree::build(volume, source.leaf, progress)?;
                 Ok(Prepared::Octree {

@@ -10,9 +10,11 @@ use crate::scene::{
     FilePath, NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions,
 };
 use crate::volume::{
-    self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, suggested_iso,
+    self, Accept, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume,
+    suggested_iso,
 };
 
+use super::engine::Engine;
 use super::outputs::absolute;
 use super::terminal::note;
 
@@ -94,8 +96,17 @@ impl Source {
 
     /// Reads and smooths the volume, and tells the user what was noteworthy.
     pub fn load(&self, progress: &dyn Progress) -> Result<Loaded> {
+        self.load_if(progress, &|_, _| Ok(()))
+    }
+
+    /// As [`Source::load`], if the volume fits what renders, which is known before its voxels are read.
+    pub fn load_for(&self, engine: &Engine, progress: &dyn Progress) -> Result<Loaded> {
+        self.load_if(progress, &|dims, voxel| engine.check_volume(dims, voxel))
+    }
+
+    fn load_if(&self, progress: &dyn Progress, accept: Accept<'_>) -> Result<Loaded> {
         let began = Instant::now();
-        let mut volume = volume::read(&self.path, &self.read, progress)?;
+        let mut volume = volume::read_if(&self.path, &self.read, progress, accept)?;
         let read_ms = ms_since(began);
         let non_finite = volume.non_finite();
         volume.notes().iter().for_each(note);

@@ -40,7 +40,7 @@ impl RenderArguments {
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = job.source.load(&bars)?;
+        let loaded = job.source.load_for(&engine, &bars)?;
         let mut resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         files.encoding.check_size(resolved.scene.size)?;

@@ -57,7 +57,7 @@ impl OrbitArguments {
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = job.source.load(&bars)?;
+        let loaded = job.source.load_for(&engine, &bars)?;
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;

@@ -306,7 +306,7 @@ mod tests {
         for slope in [1e37, -1e37, 1e307, f64::MAX, f64::INFINITY, f64::NAN, 0.0] {
             assert_eq!(
                 two_voxels(slope).err().map(|e| e.exit_code()),
-                Some(1),
+                Some(65),
                 "{slope}"
             );
         }

@@ -156,7 +156,7 @@ fn a_failed_write_leaves_nothing_behind() {
         "".into(),
     ] {
         let error = write_nrrd(&volume, &path, false).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Failed, "{error}");
+        assert_eq!(error.kind(), ErrorKind::Resource, "{error}");
     }
     assert_eq!(entries(), 1);
     write_nrrd(&volume, &folder.path().join("good.nrrd"), true).unwrap();

@@ -1,8 +1,16 @@
 //! Damaged and hostile volume files: cut off at every length, bytes changed, numbers replaced. None
 //! may make a panic, a hang, wrong voxels taken for right ones, or an absurd allocation.
 
+mod bombs;
+mod campaign;
 mod changes;
 mod memory;
+mod octree;
+#[cfg(unix)]
+mod refused;
+#[cfg(unix)]
+mod shortened;
+mod subjects;
 
 use std::fs;
 use std::io::Write;

@@ -6,6 +6,7 @@ use clap::builder::StyledStr;
 
 use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::DeviceInfo;
 use crate::progress::Progress;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
@@ -217,7 +218,7 @@ impl BenchArguments {
         let bars = Bars::new();
         let mut specimens: Vec<Specimen> = Vec::new();
         for FilePath(path) in &volumes {
-            let mut specimen = specimen(path, options.iso, &bars)?;
+            let mut specimen = specimen(path, options.iso, device.info(), &bars)?;
             specimen.check()?;
             specimen.name = free_name(&specimen.name, |name| {
                 specimens.iter().any(|other| other.name == name)
@@ -271,12 +272,17 @@ impl BenchArguments {
 }
 
 /// A volume file, looked at where the user says or the histogram suggests.
-fn specimen(path: &Path, iso: Option<Threshold>, progress: &dyn Progress) -> Result<Specimen> {
+fn specimen(
+    path: &Path,
+    iso: Option<Threshold>,
+    device: &DeviceInfo,
+    progress: &dyn Progress,
+) -> Result<Specimen> {
     let source = Source::of(&VolumeOptions {
         volume: Some(FilePath(path.to_owned())),
         ..VolumeOptions::default()
     })?;
-    let loaded = source.load(progress)?;
+    let loaded = source.load(Some(device), progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let percentile = iso.and_then(Threshold::percentile);
     let told = match (percentile, iso) {

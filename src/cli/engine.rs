@@ -7,11 +7,11 @@ use std::time::Instant;
 use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
-use crate::gpu::Device;
+use crate::gpu::{Device, DeviceInfo};
 use crate::octree::Octree;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
-use crate::render::{GradientFigures, Lanes, Options, Renderer};
+use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
 use crate::scene::options::group::group;
 use crate::scene::options::plain::readable;
@@ -170,6 +170,14 @@ impl Engine {
         }
     }
 
+    /// The OpenCL device; none where the reference renders.
+    pub fn device_info(&self) -> Option<&DeviceInfo> {
+        match self {
+            Self::Reference => None,
+            Self::Device { device, .. } => Some(device.info()),
+        }
+    }
+
     /// What the device needs of the volume, besides the volume: nothing where the reference
     /// renders.
     pub fn prepare(
@@ -180,7 +188,9 @@ impl Engine {
     ) -> Result<Prepared> {
         match self {
             Self::Reference => Ok(Prepared::Nothing),
-            Self::Device { .. } => {
+            Self::Device { device, .. } => {
+                // Smoothing may have made it larger than what was read.
+                check_volume(device.info(), volume.dims(), volume.voxels().voxel_type())?;
                 let began = Instant::now();
                 let octree = Octree::build(volume, source.leaf, progress)?;
                 Ok(Prepared::Octree {

@@ -66,7 +66,7 @@ impl InfoArguments {
         }
         let source = Source::of(&options)?;
         let bars = Bars::new();
-        let loaded = source.load(&bars)?;
+        let loaded = source.load(None, &bars)?;
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let info = Info::of(&source, &loaded, &octree);
         if json {

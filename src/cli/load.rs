@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::{Error, Result};
+use crate::gpu::DeviceInfo;
 use crate::octree::Leaf;
 use crate::progress::Progress;
+use crate::render::check_volume;
 use crate::scene::{
     FilePath, NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions,
 };
@@ -92,10 +94,18 @@ impl Source {
         options
     }
 
-    /// Reads and smooths the volume, and tells the user what was noteworthy.
-    pub fn load(&self, progress: &dyn Progress) -> Result<Loaded> {
+    /// The volume, smoothed where that is asked for. One that the device is too small for is refused before
+    /// its voxels are read.
+    ///
+    /// # Errors
+    /// As [`volume::read`]; the device is too small; there is no memory to smooth.
+    pub fn load(&self, device: Option<&DeviceInfo>, progress: &dyn Progress) -> Result<Loaded> {
+        let accept = |dims, voxel| match device {
+            Some(device) => check_volume(device, dims, voxel),
+            None => Ok(()),
+        };
         let began = Instant::now();
-        let mut volume = volume::read(&self.path, &self.read, progress)?;
+        let mut volume = volume::read_if(&self.path, &self.read, progress, &accept)?;
         let read_ms = ms_since(began);
         let non_finite = volume.non_finite();
         volume.notes().iter().for_each(note);

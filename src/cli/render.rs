@@ -44,7 +44,7 @@ impl RenderArguments {
         files.check(&job.inputs)?;
         let engine = Engine::open(&job.device)?;
         let bars = Bars::new();
-        let loaded = job.source.load(&bars)?;
+        let loaded = job.source.load(engine.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
         draw(Drawing {
             command: "render",

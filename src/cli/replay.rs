@@ -102,7 +102,7 @@ impl ReplayArguments {
         places.iter().for_each(|path| inputs.extend(files_of(path)));
         files.check(&inputs)?;
         let bars = Bars::new();
-        let (source, loaded) = found(&places, &options, &carried, &bars)?;
+        let (source, loaded) = found(&places, &options, &carried, &engine, &bars)?;
         let mut options = source.stored(options);
         options.volume.volume = Some(replay.volume.unwrap_or(stored));
         let job = Job {
@@ -171,6 +171,7 @@ fn found(
     places: &[PathBuf],
     options: &SceneOptions,
     carried: &Carried,
+    engine: &Engine,
     bars: &Bars,
 ) -> Result<(Source, Loaded)> {
     let there: Vec<&PathBuf> = places.iter().filter(|place| place.exists()).collect();
@@ -191,7 +192,7 @@ fn found(
         let mut volume = options.volume.clone();
         volume.volume = Some(FilePath(place.to_path_buf()));
         let source = Source::of(&volume)?;
-        let loaded = match source.load(bars) {
+        let loaded = match source.load(engine.device_info(), bars) {
             Err(error) if at + 1 == there.len() => return Err(error),
             Err(_) => continue,
             Ok(loaded) => loaded,

@@ -200,6 +200,13 @@ impl Builder {
 
 impl Drop for Builder {
     fn drop(&mut self) {
+        // With what it started, such as linkers. A process that was waited for has no number any more.
+        #[cfg(unix)]
+        if matches!(self.child.try_wait(), Ok(None)) {
+            let group = -libc::pid_t::from_ne_bytes(self.child.id().to_ne_bytes());
+            // SAFETY: sends a signal.
+            unsafe { libc::kill(group, libc::SIGKILL) };
+        }
         let _ = self.child.kill();
         let _ = self.child.wait();
         let _ = fs::remove_dir_all(&self.folder);

@@ -11,6 +11,7 @@ use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 use crate::crash;
 use crate::error::{Error, Result};
 use crate::kept::asked_for;
+use crate::progress::Stage;
 
 use super::builder::{self, Answer, Builders, Request};
 use super::process::{self, Arranged};
@@ -64,19 +65,17 @@ pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
     let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.kept(device)).collect();
     let missing: Vec<usize> = (0..plans.len()).filter(|&i| kernels[i].is_none()).collect();
     if !missing.is_empty() {
-        let progress = device.listener();
-        progress.begin("building kernels", missing.len() as u64);
+        let count = missing.len() as u64;
+        let stage = Stage::begin(device.listener(), "building kernels", count);
         let take = |i: usize, kernel| {
             kernels[i] = Some(kernel);
             device.count_built();
-            progress.advance(1);
+            stage.advance(1);
         };
-        let built = match process::arranged() {
-            Some(arranged) => build_elsewhere(arranged, device, &plans, &missing, take),
-            None => build_here(device, &plans, &missing, take),
-        };
-        progress.end();
-        built?;
+        match process::arranged() {
+            Some(arranged) => build_elsewhere(arranged, device, &plans, &missing, take)?,
+            None => build_here(device, &plans, &missing, take)?,
+        }
     }
     Ok(kernels.into_iter().flatten().collect())
 }

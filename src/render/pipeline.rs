@@ -21,8 +21,8 @@ use super::gradient::{self, DeviceDirections, DeviceGradient, GradientFigures};
 use super::lanes::Lanes;
 use super::passes::{Built, DeviceVolume, Run, tone_curve};
 use super::picture::{self, View};
-use super::planes::check_room;
 use super::rays::{ray_grid, volume_grid};
+use super::room::{check_picture, check_volume};
 use super::twins;
 use super::variant::{MOST_SAMPLES, Variant};
 use super::voxels::{DeviceVoxels, HeldVoxels};
@@ -91,6 +91,7 @@ impl<'a> Renderer<'a> {
         let start = Instant::now();
         let uploaded_before = device.uploaded_bytes();
         check_work_group(device, options.work_group)?;
+        check_volume(device.info(), volume.dims(), volume.voxels().voxel_type())?;
         let levels: Vec<[u32; 4]> = octree
             .levels()
             .iter()
@@ -136,6 +137,11 @@ impl<'a> Renderer<'a> {
         self.classified.forget();
     }
 
+    /// What the device holds of the volume at least, uploaded or not.
+    fn least_held_bytes(&self) -> u64 {
+        self.uploaded.bytes() + self.volume.voxels().bytes().len() as u64
+    }
+
     /// Uploads the voxels as they are to be held, unless they are there; this is upload time.
     fn upload_voxels(&mut self, storage: Storage) -> Result<()> {
         let start = Instant::now();
@@ -177,6 +183,8 @@ impl<'a> Renderer<'a> {
         }
         let storage = scene.sampling.voxels;
         storage.check(method, scene.sampling.filter)?;
+        let device_info = self.device.info();
+        check_picture(device_info, scene.size, wanted, self.least_held_bytes())?;
         self.upload_voxels(storage)?;
         let uploaded_before = self.device.uploaded_bytes();
         self.precompute(scene, wanted)?;
@@ -184,7 +192,7 @@ impl<'a> Renderer<'a> {
         let directions_bytes = directions.map_or(0, |directions| directions.figures.bytes);
         let directions = directions.filter(|_| gradient::needed(scene, wanted).is_some());
         let held_bytes = self.uploaded.bytes() + self.voxels.bytes() + directions_bytes;
-        check_room(self.device, scene.size, wanted, held_bytes)?;
+        check_picture(device_info, scene.size, wanted, held_bytes)?;
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, self.volume, self.octree);
         let (device, volume, octree) = (self.device, self.volume, self.octree);

@@ -1,42 +1,14 @@
 //! The planes that a picture's passes leave on the device, and their way back to the host.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{Certificate, Frame, Kind, Wanted};
-use crate::gpu::{Buffer, Device, DeviceKind, Element};
+use crate::gpu::{Buffer, Device, Element};
 use crate::memory;
 use crate::scene::Emission;
 use crate::volume::Rescale;
 
 use super::passes::Counters;
-
-/// Fails before anything is allocated when a frame of this size cannot fit. Counts the most that a
-/// picture with these planes can hold; on a CPU the copies that are read back come out of the same
-/// memory.
-///
-/// # Errors
-/// The planes, with `held_bytes` of volume and octree, exceed the device's memory.
-pub fn check_room(device: &Device, size: ImageSize, wanted: Wanted, held_bytes: u64) -> Result<()> {
-    const COLOR: u64 = 16;
-    const SCALAR: u64 = 4;
-    let display = if wanted.display { COLOR } else { 0 };
-    // Colour, normal, hit, kind, certificate, value, depth, and both counters.
-    let on_device = 2 * COLOR + 7 * SCALAR + display;
-    let read_back = match device.info().kind {
-        DeviceKind::Cpu => on_device,
-        DeviceKind::Gpu | DeviceKind::Accelerator => 0,
-    };
-    let bytes = size.pixels() as u64 * (on_device + read_back) + held_bytes;
-    let memory_bytes = device.info().memory_bytes;
-    if bytes <= memory_bytes {
-        return Ok(());
-    }
-    Err(Error::resource(format!(
-        "a picture of {size} pixels needs up to {bytes} bytes with its volume, the device '{}' has {memory_bytes}",
-        device.info().name
-    ))
-    .hint("choose a smaller --size"))
-}
 
 /// Planes of a picture on the device; the optional ones were wanted, or needed on the way.
 pub struct Planes {

@@ -24,7 +24,7 @@ pub use phantom::{
     HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
     VesselTree, orientation_of, phantom,
 };
-pub use read::{RawLayout, RawSize, RawType, ReadOptions, files_of, read};
+pub use read::{Accept, RawLayout, RawSize, RawType, ReadOptions, files_of, read, read_if};
 pub use shortened::end_when_shortened;
 pub use smooth::smooth;
 pub use write_nrrd::write_nrrd;

@@ -123,7 +123,7 @@ impl CompareArguments {
             .collect::<Result<Vec<Peer>>>()?;
 
         let bars = Bars::new();
-        let loaded = source.load(&bars)?;
+        let loaded = source.load(Some(device.info()), &bars)?;
         let options = loaded.measured(options);
         let mut modes = modes
             .into_iter()

@@ -54,7 +54,7 @@ impl OrbitArguments {
         let engine = Engine::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = job.source.load(&bars)?;
+        let loaded = job.source.load(engine.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);

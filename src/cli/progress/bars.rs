@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::super::terminal::on_one_line;
+use super::COUNTED;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 
 /// Work shorter than this shows no bar.
@@ -57,8 +58,8 @@ impl Progress for TerminalBars {
             shown: false,
         };
         stage.bar.set_message(on_one_line(name));
-        if unknown {
-            // Nothing advances it: it turns by itself.
+        if unknown || total <= COUNTED {
+            // Nothing advances it, or seldom: it turns by itself.
             self.show(&mut stage);
             stage.bar.enable_steady_tick(TICK);
         }
@@ -85,7 +86,10 @@ impl Progress for TerminalBars {
 fn counting_bar(total: u64) -> ProgressBar {
     let bar = ProgressBar::hidden();
     bar.set_length(total);
-    let style = ProgressStyle::with_template("{msg:>12} [{bar:40}] {percent:>3}% {eta}");
+    let style = ProgressStyle::with_template(match total <= COUNTED {
+        true => "{msg:>12} [{bar:40}] {pos} of {len} {spinner} {elapsed}",
+        false => "{msg:>12} [{bar:40}] {percent:>3}% {eta}",
+    });
     if let Ok(style) = style {
         bar.set_style(style.progress_chars("=> "));
     }

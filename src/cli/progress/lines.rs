@@ -5,6 +5,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::super::terminal::message;
+use super::COUNTED;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 
 /// Time between two lines, and before the first.
@@ -89,7 +90,7 @@ impl Shared {
 }
 
 impl State {
-    /// All stages, the outermost first: `iso: timing 45 %, building kernels 7 s`.
+    /// All stages, the outermost first: `iso: timing 45 %, building kernels 2 of 5`.
     fn line(&self) -> String {
         let stages: Vec<String> = self.stages.iter().map(Stage::text).collect();
         stages.join(", ")
@@ -100,6 +101,10 @@ impl Stage {
     fn text(&self) -> String {
         if self.total == UNKNOWN_TOTAL {
             return format!("{} {} s", self.name, self.began.elapsed().as_secs());
+        }
+        if self.total <= COUNTED {
+            let done = self.done.min(self.total);
+            return format!("{} {done} of {}", self.name, self.total);
         }
         // In 128 bits, where no product of two totals overflows.
         let percent = 100 * u128::from(self.done.min(self.total)) / u128::from(self.total);
@@ -179,14 +184,14 @@ mod tests {
         lines.advance(2);
         lines.begin("reference", 200);
         lines.advance(150);
-        let both = "iso: pictures 25 %, reference 75 %";
+        let both = "iso: pictures 2 of 8, reference 75 %";
         assert!(written.iter().any(|line| line == both));
         lines.end();
         lines.advance(1);
-        assert!(written.iter().any(|line| line == "iso: pictures 37 %"));
+        assert!(written.iter().any(|line| line == "iso: pictures 3 of 8"));
         // Further than the total there is nothing.
         lines.advance(u64::MAX);
-        assert!(written.iter().any(|line| line == "iso: pictures 100 %"));
+        assert!(written.iter().any(|line| line == "iso: pictures 8 of 8"));
     }
 
     #[test]

@@ -22,6 +22,9 @@ enum Form {
     Lines(Lines),
 }
 
+/// Up to so many units of a stage are counted; of more the share is said.
+const COUNTED: u64 = 99;
+
 /// The ones that are alive.
 static SHOWN: Mutex<Weak<Form>> = Mutex::new(Weak::new());
 

@@ -67,6 +67,7 @@ impl Array {
                 self.note_rest(&format!("{} bytes", bytes.len() - total));
             }
         }
+        (request.accept)(self.dims, self.element.scalar.voxel_type())?;
         request.progress.begin("reading", frame_bytes);
         let voxels = match &payload {
             Payload::Mapped(bytes) => self.in_place(bytes)?,

@@ -28,8 +28,9 @@ use std::path::Path;
 
 use self::source::Source;
 use crate::error::{Error, Result};
+use crate::extent::Dims;
 use crate::progress::Progress;
-use crate::volume::{NonFinite, Volume};
+use crate::volume::{NonFinite, Volume, VoxelType};
 
 /// What the user may say about reading a file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -45,7 +46,11 @@ struct Request<'a> {
     path: &'a Path,
     options: &'a ReadOptions,
     progress: &'a dyn Progress,
+    accept: Accept<'a>,
 }
+
+/// Whether whoever asks can do with a volume of this size, whose voxels will be held as this type.
+pub type Accept<'a> = &'a dyn Fn(Dims, VoxelType) -> Result<()>;
 
 /// Reads a volume file: NRRD, MetaImage, NIfTI-1/2, NumPy (.npy, .npz) or headerless voxels, each
 /// also gzipped. Geometry comes out in mm, LPS; a file without any has spacing 1, origin 0,
@@ -55,10 +60,24 @@ struct Request<'a> {
 /// `path: cause`, in one sentence: unreadable, unknown, unsupported, cut off, or lying files
 /// (failed); a frame the file does not have, an incomplete headerless description (usage).
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Volume> {
+    read_if(path, options, progress, &|_, _| Ok(()))
+}
+
+/// As [`read`], if `accept` accepts what the header says, which it is asked before any voxel is read.
+///
+/// # Errors
+/// Those of [`read`] and of `accept`, behind the path.
+pub fn read_if(
+    path: &Path,
+    options: &ReadOptions,
+    progress: &dyn Progress,
+    accept: Accept<'_>,
+) -> Result<Volume> {
     let request = Request {
         path,
         options,
         progress,
+        accept,
     };
     Source::open(path)
         .and_then(|source| read_source(source, &request))

@@ -1,6 +1,11 @@
 //! Built kernels are kept from run to run, and what is kept cannot spoil a picture.
 
+#[path = "../common/mod.rs"]
 mod common;
+
+mod damaged;
+mod ended;
+mod places;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -57,9 +62,30 @@ impl Place {
         if let Some(kernels) = kernels {
             command.env("ANGIORAY_KERNELS", kernels);
         }
+        self.rendered(&mut command)
+    }
+
+    /// Renders a picture of few kernels that are quickly built.
+    fn simple_command(&self) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_angioray"));
+        command
+            .args(
+                "render --iso 50% --size 24x24 --lanes 1 --sampling fixed --shading none"
+                    .split(' '),
+            )
+            .args(self.device.split_whitespace())
+            .arg(self.path("sphere.nrrd"))
+            .arg("-o")
+            .arg(self.path("picture.png"))
+            .env("ANGIORAY_KERNEL_CACHE", self.path("kept"));
+        command
+    }
+
+    /// The picture's bytes.
+    fn rendered(&self, command: &mut Command) -> Vec<u8> {
         let output = command.output().unwrap();
         assert!(output.status.success(), "{output:?}");
-        fs::read(picture).unwrap()
+        fs::read(self.path("picture.png")).unwrap()
     }
 
     fn kept(&self) -> Vec<PathBuf> {

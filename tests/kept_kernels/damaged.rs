@@ -1,0 +1,155 @@
+//! Damaged files never decide what is drawn, and never have to be removed by a person.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::Place;
+
+/// All files below a folder, by path.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => found.extend(files_below(&path)),
+            false => found.push(path),
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Damages a file's bytes.
+type Damage = fn(&mut Vec<u8>);
+
+const DAMAGES: [(&str, Damage); 4] = [
+    ("cut in half", |bytes| bytes.truncate(bytes.len() / 2)),
+    ("empty", Vec::clear),
+    ("zero", |bytes| bytes.fill(0)),
+    ("flipped behind its head", |bytes| {
+        let head = bytes.len().min(64);
+        bytes[head..].iter_mut().for_each(|byte| *byte ^= 0x5a);
+    }),
+];
+
+fn damage(files: &[PathBuf], how: Damage) {
+    for path in files {
+        let mut bytes = fs::read(path).unwrap();
+        how(&mut bytes);
+        fs::write(path, bytes).unwrap();
+    }
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn what_the_driver_keeps_may_be_damaged() {
+    let Some(place) = Place::new() else { return };
+    let drivers = place.path("drivers");
+    fs::create_dir(&drivers).unwrap();
+    let render = || {
+        let mut command = place.simple_command();
+        command.env("POCL_CACHE_DIR", &drivers);
+        command.env("ANGIORAY_KERNEL_CACHE", "off");
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        fs::read(place.path("picture.png")).unwrap()
+    };
+    let own = render();
+    let files = files_below(&drivers);
+    if files.is_empty() {
+        return crate::common::skip("this driver keeps nothing");
+    }
+    for (name, how) in DAMAGES {
+        damage(&files_below(&drivers), how);
+        assert_eq!(render(), own, "{name}");
+    }
+}
+
+#[test]
+fn kept_kernels_may_be_damaged() {
+    let Some(place) = Place::new() else { return };
+    let render = || place.rendered(&mut place.simple_command());
+    let own = render();
+    let kept = place.kept();
+    for (name, how) in DAMAGES {
+        damage(&kept, how);
+        assert_eq!(render(), own, "{name}");
+        assert_eq!(place.kept(), kept, "{name}");
+    }
+    // The control: whole they are taken as they are.
+    let whole: Vec<Vec<u8>> = kept.iter().map(|path| fs::read(path).unwrap()).collect();
+    assert_eq!(render(), own);
+    let after: Vec<Vec<u8>> = kept.iter().map(|path| fs::read(path).unwrap()).collect();
+    assert!(whole == after);
+}
+
+/// A kept kernel that is whole, but whose code is none: as where another processor has this one's name.
+fn with_other_code(kept: &[u8]) -> Option<Vec<u8>> {
+    let binary = &kept[blake3::OUT_LEN..];
+    let library = binary.windows(4).position(|bytes| bytes == b"\x7fELF")?;
+    let mut binary = binary.to_vec();
+    // Of its program: what it is loaded by stays.
+    let end = (library + 0x2000).min(binary.len());
+    binary[(library + 0x1000).min(end)..end].fill(0x06);
+    let digest = blake3::hash(&binary);
+    Some([digest.as_bytes(), &binary[..]].concat())
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn a_kept_kernel_that_ends_the_process_says_so_and_is_removed() {
+    let Some(place) = Place::new() else { return };
+    let own = place.rendered(&mut place.simple_command());
+    fs::remove_file(place.path("picture.png")).unwrap();
+    for path in place.kept() {
+        let Some(other) = with_other_code(&fs::read(&path).unwrap()) else {
+            return crate::common::skip("this driver's binaries hold no machine code");
+        };
+        fs::write(&path, other).unwrap();
+    }
+    let output = place.simple_command().output().unwrap();
+    let told = said(&output);
+    assert_eq!(output.status.code(), Some(74), "{output:?}");
+    assert_eq!(told.matches("error: ").count(), 1, "{told}");
+    for part in ["SIG", "the device", "the same command builds them again"] {
+        assert!(told.contains(part), "{told}");
+    }
+    assert_eq!(place.kept(), [PathBuf::new(); 0]);
+    assert!(!place.path("picture.png").exists());
+    assert_eq!(place.rendered(&mut place.simple_command()), own);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_in_a_kernels_place_is_not_waited_for() {
+    use std::os::unix::net::UnixListener;
+    let Some(place) = Place::new() else { return };
+    let render = || place.rendered(&mut place.simple_command());
+    let own = render();
+    let kept = place.kept();
+    let [pipe, socket, device, ..] = &kept[..] else {
+        panic!("{kept:?}")
+    };
+    kept.iter().for_each(|path| fs::remove_file(path).unwrap());
+    let mode = rustix::fs::Mode::RWXU;
+    rustix::fs::mkfifoat(rustix::fs::CWD, pipe, mode).unwrap();
+    let _listening = UnixListener::bind(socket).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", device).unwrap();
+    assert_eq!(render(), own);
+    for path in [pipe, socket, device] {
+        assert!(
+            path.symlink_metadata().unwrap().is_file(),
+            "{}",
+            path.display()
+        );
+    }
+    // A folder stays, and nothing is kept there.
+    fs::remove_file(pipe).unwrap();
+    fs::create_dir(pipe).unwrap();
+    assert_eq!(render(), own);
+    assert!(pipe.is_dir());
+}

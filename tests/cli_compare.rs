@@ -196,7 +196,7 @@ fn what_is_done_before_a_failure_is_kept() {
     let place = Place::with_ball();
     fs::create_dir_all(place.path("out/pictures/mip-02-step-2.png")).unwrap();
     let output = place.run(&format!("{SMALL} --modes iso,mip {device}"));
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(74));
     assert!(
         stderr(&output).contains("mip-02-step-2.png"),
         "{}",
@@ -252,7 +252,7 @@ fn wrong_usage_is_refused_before_the_work() {
         ),
         (
             "compare ball.nrrd -o out --configs none.toml",
-            1,
+            65,
             "none.toml",
         ),
         (
@@ -267,7 +267,7 @@ fn wrong_usage_is_refused_before_the_work() {
     let Some(device) = common::device_flag() else {
         return;
     };
-    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 1);
+    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 74);
     assert!(said.contains("is not a folder"), "{said}");
 }
 

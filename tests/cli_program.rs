@@ -334,36 +334,49 @@ fn json_on_stdout_is_the_same_value_without_what_a_terminal_obeys() {
 }
 
 #[test]
-fn failed_jobs_are_exit_1() {
+fn unusable_inputs_are_exit_65_and_failed_outputs_74() {
     let place = Place::with_ball();
     place.write("noise.nrrd", "NRRD0004\nthis is no header\n");
-    for (line, reason) in [
-        ("render none.nrrd -o a.png --device reference", "none.nrrd"),
+    for (line, code, reason) in [
+        (
+            "render none.nrrd -o a.png --device reference",
+            65,
+            "none.nrrd",
+        ),
         (
             "render noise.nrrd -o a.png --device reference",
+            65,
             "noise.nrrd",
         ),
         (
             "render ball.nrrd -o no/such/a.png --device reference",
+            74,
             "no/such",
         ),
         (
             "render ball.nrrd -o a.png --stats no/such/a.json --device reference",
+            74,
             "no/such",
         ),
         (
             "render ball.nrrd -o a.png --scene none.toml --device reference",
+            65,
             "none.toml",
         ),
         (
             "render ball.nrrd -o a.png --mode dvr --tf none.toml --device reference",
+            65,
             "none.toml",
         ),
-        ("phantom sphere -o no/such/a.nrrd", "no/such"),
-        ("info none.nrrd", "none.nrrd"),
-        ("render none.nrrd -o a.png/ --device reference", "a.png/"),
+        ("phantom sphere -o no/such/a.nrrd", 74, "no/such"),
+        ("info none.nrrd", 65, "none.nrrd"),
+        (
+            "render none.nrrd -o a.png/ --device reference",
+            74,
+            "a.png/",
+        ),
     ] {
-        let said = place.refused(line, 1);
+        let said = place.refused(line, code);
         assert!(said.contains(reason), "{line}: {said}");
     }
 }
@@ -471,7 +484,7 @@ fn a_closed_pipe_is_no_error() {
             .stdout(full)
             .output()
             .unwrap();
-        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(output.status.code(), Some(74));
         assert!(stderr(&output).starts_with("error: "));
     }
 }

@@ -206,7 +206,7 @@ fn traversals_of_a_volume_give_the_same_bytes() {
         assert!(!text.contains(&folder), "{file} names {folder}");
         assert!(text.contains("=1+1"), "{file}");
     }
-    let again = "angioray bench traversals '=1+1.nrrd' --quick -o out";
+    let again = "angioray bench traversals =1+1.nrrd --quick -o out";
     assert!(
         json["command_line"].as_str().unwrap().starts_with(again),
         "{json:#}"

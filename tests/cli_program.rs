@@ -434,7 +434,7 @@ fn json_on_stdout_is_the_same_value_without_what_a_terminal_obeys() {
 }
 
 #[test]
-fn inputs_that_are_unusable_are_exit_65_and_outputs_that_fail_exit_74() {
+fn unusable_inputs_are_exit_65_and_failed_outputs_74() {
     let place = Place::with_ball();
     place.write("noise.nrrd", "NRRD0004\nthis is no header\n");
     for (line, code, reason) in [

@@ -614,7 +614,7 @@ const CLIPPED: &str = "const name = (e) => `${e.tagName}.${e.getAttribute('class
 
 /// Names and figures as long as they get.
 fn with_long_names() -> Report {
-    let long = "VTK 9.7.2: fixed-point, step 0.5, nearest";
+    let long = "VTK 9.7.2: fixed-point, step 0.5";
     let mut report = in_modes();
     for section in &mut report.sections[..2] {
         let pictures = &mut section.gallery.as_mut().unwrap().pictures;

@@ -30,6 +30,7 @@ pub use smooth::smooth;
 pub use write_nrrd::write_nrrd;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::extent::{Dims, Range};
@@ -202,8 +203,8 @@ impl Volume {
         Ok(())
     }
 
-    /// Floats of extreme magnitude are scaled by a power of two (exact but for denormals), so that
-    /// products of two differences neither overflow nor vanish in single precision.
+    /// Floats of extreme magnitude are scaled by a power of two, so that products of two differences
+    /// neither overflow nor vanish in single precision: exactly, as [`Self::exponent_off`] sees to.
     fn settle_exponent(&mut self) -> Result<()> {
         if !matches!(self.voxels, Voxels::F32(_)) {
             return Ok(());
@@ -212,15 +213,38 @@ impl Volume {
         if largest == 0.0 || (-40.0..40.0).contains(&largest.log2()) {
             return Ok(());
         }
-        let shift = largest.log2().floor();
+        let shift = self.exponent_off(largest);
         let down = (-shift).exp2();
         self.voxels.map_f32(|v| (f64::from(v) * down) as f32)?;
         self.rescale.slope *= shift.exp2();
+        // As the voxels are, which may be coarser.
+        let scaled = |value: f64| f64::from((value * down) as f32);
         self.stored_range = Range {
-            min: self.stored_range.min * down,
-            max: self.stored_range.max * down,
+            min: scaled(self.stored_range.min),
+            max: scaled(self.stored_range.max),
         };
         Ok(())
+    }
+
+    /// By which power of two the voxels, of `largest` magnitude, are divided: to about 1, but large ones
+    /// only so far that the smallest beside them keeps its digits. Where no power does both, differences
+    /// must not overflow, and the smallest are coarser.
+    fn exponent_off(&self, largest: f64) -> f64 {
+        /// A difference and its multiples below this have room.
+        const MOST_EXPONENT: f64 = 120.0;
+        let to_one = largest.log2().floor();
+        let least = match &self.voxels {
+            Voxels::F32(voxels) if to_one > 0.0 => voxels
+                .par_iter()
+                .map(|voxel| voxel.abs())
+                .filter(|magnitude| *magnitude > 0.0)
+                .reduce(|| f32::INFINITY, f32::min),
+            _ => return to_one,
+        };
+        let exactly = (least / f32::MIN_POSITIVE).log2().floor();
+        f64::from(exactly)
+            .max(to_one - MOST_EXPONENT)
+            .clamp(0.0, to_one)
     }
 
     /// Floats far from zero compared with their range are counted from their minimum (exact, after
@@ -363,6 +387,39 @@ mod tests {
                 assert_eq!(volume.rescale().physical(stored), f64::from(voxel));
             }
         }
+    }
+
+    /// The values beside each other are as in the file, and the range is theirs.
+    #[test]
+    fn small_floats_beside_extreme_ones_keep_their_values() {
+        let of = |voxels: Vec<f32>| {
+            let dims = Dims::new([voxels.len() as u64, 1, 1]).unwrap();
+            let (geometry, rescale) = (Geometry::default(), Rescale::IDENTITY);
+            Volume::new(dims, voxels.into(), geometry, rescale, NonFinite::Refuse).unwrap()
+        };
+        let physical = |volume: &Volume| -> Vec<f64> {
+            let each = 0..volume.voxels().len();
+            each.map(|i| volume.rescale().physical(volume.voxels().stored(i)))
+                .collect()
+        };
+        for voxels in [
+            vec![1e30_f32, 1e-30],
+            vec![1e30, -1e30, 0.0, 3e-20],
+            vec![-3e38, 1e-35],
+            vec![1e16, f32::from_bits(1)],
+        ] {
+            let volume = of(voxels.clone());
+            let values: Vec<f64> = voxels.iter().copied().map(f64::from).collect();
+            assert_eq!(physical(&volume), values);
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            assert_eq!(volume.range().min, least);
+            assert!(volume.stored_range().max < 121_f64.exp2());
+        }
+        // No power does both: the range is still that of the voxels as they are kept.
+        let volume = of(vec![3e38, 1e-41]);
+        let kept = physical(&volume);
+        assert!(volume.stored_range().max < 121_f64.exp2());
+        assert!(kept[1] != f64::from(1e-41_f32) && volume.range().min == kept[1]);
     }
 
     #[test]

@@ -38,6 +38,9 @@ What --sampling, --step, --filter and the like say is compared as one setting mo
 --max-error chooses is another. All are held against the reference of the scene, in linear
 interpolation and with central differences.
 
+Stopped by Ctrl-C or SIGTERM it ends at once with exit code 75; the results so far are in the folder, and
+the reference's pictures are kept for the next run.
+
 A file of settings, for --configs:
   [[setting]]
   name = \"coarse\"

@@ -124,7 +124,7 @@ fn defaults_are_made_for_the_robust_range() {
     };
     let of = |line: &[&str]| flags(line).resolve(&outliers).unwrap();
     let window = |line: &[&str]| match of(line).scene.picture {
-        Picture::Projection { window, .. } => (window.low(), window.high()),
+        Picture::Projection { window, .. } => (window.black(), window.white()),
         other => panic!("{other:?}"),
     };
     assert_eq!(window(&["--mode", "mip"]), (-100.0, 300.0));
@@ -276,7 +276,7 @@ fn order_statistics_are_replaced_by_their_values() {
     };
     let given = file("mode = 'lmip'\nwindow = 'p99.5,P1'\nlmip-threshold = 'p1'");
     assert!(given.resolve(&SUBJECT).is_err());
-    let (options, notes) = given.measured(values);
+    let (options, notes) = given.measured(SUBJECT.range, values);
     assert_eq!(
         options,
         file("mode = 'lmip'\nwindow = [40, 7]\nlmip-threshold = 7")
@@ -288,7 +288,8 @@ fn order_statistics_are_replaced_by_their_values() {
     assert!(options.resolve(&SUBJECT).is_ok());
     // The controls: a share of the range is none, and nothing is asked for where none is named.
     let share = file("iso = '50%'");
-    assert_eq!(share.clone().measured(|_| unreachable!()), (share, vec![]));
+    let of_share = share.clone().measured(SUBJECT.range, |_| unreachable!());
+    assert_eq!(of_share, (share, vec![]));
     for wrong in ["p", "p101", "p-1", "pp5", "5p", "p5%"] {
         assert!(
             refusal(&format!("iso = '{wrong}'")).contains("is not a"),

@@ -9,6 +9,7 @@ use glam::DVec3;
 const SUBJECT: Subject = Subject {
     center_world: DVec3::ZERO,
     radius_mm: 10.0,
+    spacing_mm: DVec3::ONE,
     range: Range {
         min: 0.0,
         max: 255.0,

@@ -37,6 +37,7 @@ fn subject(volume: &Volume) -> Subject {
     Subject {
         center_world,
         radius_mm,
+        spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,
         otsu: range.at(0.5),

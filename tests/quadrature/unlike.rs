@@ -27,6 +27,7 @@ fn subject(volume: &Volume) -> Subject {
         radius_mm,
         spacing_mm: volume.geometry().spacing_mm(),
         range,
+        robust_range: range,
         otsu: range.at(0.5),
         suggested_iso: range.at(0.5),
     }

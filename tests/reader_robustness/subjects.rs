@@ -33,9 +33,14 @@ const SCENES: [&str; 4] = [
 const SUBJECT: Subject = Subject {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+    spacing_mm: DVec3::new(0.5, 0.5, 2.0),
     range: Range {
         min: -100.0,
         max: 300.0,
+    },
+    robust_range: Range {
+        min: -90.0,
+        max: 250.0,
     },
     otsu: 42.5,
     suggested_iso: 120.0,

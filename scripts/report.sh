@@ -28,7 +28,7 @@ shoot() {
 
 # From the first mode's pictures on.
 sed 's/<\/body>/<script>document.querySelector("header").remove();<\/script><\/body>/' report/report.html >page.html
-shoot "$work/page.html" "$docs/page.png" 1200 1230
+shoot "$work/page.html" "$docs/page.png" 1200 1740
 cat >missed.html <<'HTML'
 <body style="margin:0;display:flex;gap:6px;background:#fff;image-rendering:pixelated">
 <img src="report/pictures/iso-00-reference.png" width="256"><img src="report/pictures/iso-01-step-1-plain.png" width="256"><img src="report/pictures/iso-01-step-1-plain-error.png" width="256">

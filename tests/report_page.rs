@@ -606,7 +606,9 @@ const CLIPPED: &str = "const name = (e) => `${e.tagName}.${e.getAttribute('class
       return pen.measureText(e.selectedOptions[0]?.textContent ?? '').width > room; };
     const cut = (e) => { const s = getComputedStyle(e); if (scrolls(e)) return false;
       return s.overflowX !== 'visible' && (e.scrollWidth > e.clientWidth + 1 || e.scrollHeight > e.clientHeight + 1); };
-    const out = (e) => { const box = e.getBoundingClientRect(); return (box.left < -0.5 || box.right > innerWidth + 0.5) && !reachable(e); };
+    const inked = (e) => { const range = document.createRange(); range.selectNodeContents(e); return range.getBoundingClientRect(); };
+    const beyond = (box) => box.left < -0.5 || box.right > innerWidth + 0.5;
+    const out = (e) => (beyond(e.getBoundingClientRect()) || beyond(inked(e))) && !reachable(e);
     const shown = all('body *').filter((e) => visible(e) && !['SCRIPT', 'STYLE'].includes(e.tagName));
     return [...shown.filter((e) => hasText(e) && (cut(e) || out(e))), ...all('select').filter((e) => visible(e) && chosen(e)),
       ...all('.stage').filter((e) => [...e.children].some((c) => c.matches('.tag') && visible(c)
@@ -708,7 +710,7 @@ fn nothing_is_clipped() {
         ),
         (
             "a title in the plot",
-            with(".axis.y { white-space: nowrap; }"),
+            with(".axis.y { white-space: nowrap; font-size: 20px; }"),
         ),
         (
             "a command on one line",

@@ -115,21 +115,7 @@ impl Comparison<'_> {
         let truth = (self.truth).frame(&of_mode.resolved.scene, wanted, self.progress)?;
         let mut pictures = vec![self.keep_reference(&of_mode, &truth.frame)?];
         let mut maps = Vec::new();
-        match self.choose(&mut of_mode, renderer) {
-            Ok(None) => {}
-            Ok(Some(choice)) => {
-                compared.findings.push(format!("{mode}: {choice}"));
-                let stored = ToleranceStats::of(&choice);
-                compared.choices.insert(mode.to_string(), stored);
-            }
-            Err(error) => {
-                let names = of_mode.names();
-                let name = names.last().map_or("max-error", String::as_str);
-                let mut row = Row::new(mode, name, OURS);
-                row.fail(&error);
-                compared.rows.push(row);
-            }
-        }
+        self.keep_choice(&mut of_mode, compared, renderer);
         let first = compared.rows.len();
         let mut contenders = contenders(&of_mode, peers);
         let name = format!("{mode}: pictures");
@@ -163,24 +149,60 @@ impl Comparison<'_> {
         }
         let rows = &mut compared.rows[before..];
         front::mark_front(mode, rows);
-        let maps = pictures::to_one_scale(maps)?;
-        let pictured = rows
-            .iter()
-            .filter_map(|row| Some((row, row.files.as_ref()?)));
-        for (((row, files), picture), map) in pictured.zip(&mut pictures[1..]).zip(&maps) {
-            picture.caption = page::caption(mode, row);
-            picture.error_map = Some(pictures::recolored(&self.folder, files, map)?);
-        }
+        let gallery = self.gallery(rows, pictures, maps)?;
         let about = self.about_mode(&of_mode, &truth);
-        let pictured = rows.iter().filter(|row| row.files.is_some());
-        // Before them is the reference.
-        let opens_on = page::most_telling(pictured.zip(&maps)).map(|at| at + 1);
-        let gallery = Gallery { pictures, opens_on };
         let section = page::section(mode, about, rows, gallery);
         let finding = page::finding(mode, rows);
         compared.sections.push(section);
         compared.findings.extend(finding);
         self.folder.write_results(&self.about, compared)
+    }
+
+    /// A mode's pictures, the reference first, with captions and with the error maps of the rows that have a
+    /// picture.
+    fn gallery(
+        &self,
+        rows: &[Row],
+        mut pictures: Vec<report::Picture>,
+        maps: Vec<ErrorMap>,
+    ) -> Result<Gallery> {
+        let maps = pictures::to_one_scale(maps)?;
+        let pictured = || {
+            let rows = rows.iter();
+            rows.filter_map(|row| Some((row, row.files.as_ref()?)))
+        };
+        for (((row, files), picture), map) in pictured().zip(&mut pictures[1..]).zip(&maps) {
+            picture.caption = page::caption(row.mode, row);
+            picture.error_map = Some(pictures::recolored(&self.folder, files, map)?);
+        }
+        let rows = pictured().map(|(row, _)| row);
+        let opens_on = page::most_telling(rows.zip(&maps)).map(|at| at + 1);
+        Ok(Gallery { pictures, opens_on })
+    }
+
+    /// Takes over what a bound chooses for the mode, or a row that says why it chose nothing.
+    fn keep_choice(
+        &self,
+        of_mode: &mut ModeSettings,
+        compared: &mut Compared,
+        renderer: &mut Renderer,
+    ) {
+        let mode = of_mode.mode;
+        match self.choose(of_mode, renderer) {
+            Ok(None) => {}
+            Ok(Some(choice)) => {
+                compared.findings.push(format!("{mode}: {choice}"));
+                let stored = ToleranceStats::of(&choice);
+                compared.choices.insert(mode.to_string(), stored);
+            }
+            Err(error) => {
+                let names = of_mode.names();
+                let name = names.last().map_or("max-error", String::as_str);
+                let mut row = Row::new(mode, name, OURS);
+                row.fail(&error);
+                compared.rows.push(row);
+            }
+        }
     }
 
     /// Adds the setting that a bound chooses, where there is a bound.

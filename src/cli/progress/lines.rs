@@ -40,7 +40,7 @@ struct Stage {
 
 impl Lines {
     pub fn to_stderr() -> Self {
-        Self::every(PAUSE, |line| message(line))
+        Self::every(PAUSE, message)
     }
 
     fn every(pause: Duration, write: impl Fn(String) + Send + 'static) -> Self {

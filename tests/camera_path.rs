@@ -131,7 +131,7 @@ fn about_up_it_turns_as_azimuth_does_and_about_z_as_a_c_arm() {
 
 #[test]
 fn axes_and_numbers_that_make_no_orbit_are_refused() {
-    for axis in ["", "w", "0,0,0", "1,2", "nan,0,1", "Up", "1,2,3,4"] {
+    for axis in ["", "w", "0,0,0", "1,2", "nan,0,1", "upward", "1,2,3,4"] {
         let said = axis.parse::<OrbitAxis>().unwrap_err();
         assert!(said.to_string().contains("is not an axis"), "{said}");
         assert_eq!(said.exit_code(), 2);

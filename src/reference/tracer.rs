@@ -3,9 +3,10 @@
 use glam::{DMat3, DVec3};
 
 use crate::error::{Error, Result};
+use crate::extent::Range;
 use crate::frame::{Kind, Wanted};
 use crate::scene::{Emission, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
-use crate::volume::{Volume, Voxel};
+use crate::volume::{Rescale, Volume, Voxel};
 use crate::with_voxels;
 
 use super::clip::IndexPlane;
@@ -245,12 +246,17 @@ impl<'a> Tracer<'a> {
             gradient_world_from_index: self.gradient_world_from_index(),
             toward_eye: -dir_world,
         });
-        let range = self.volume.range();
+        let Rescale { slope, intercept } = self.volume.rescale();
+        let Range { min, max } = self.volume.stored_range();
+        let range = Range {
+            min: slope * min,
+            max: slope * max,
+        };
         let means = emission::means(field, interval, medium, range, normals.as_ref());
         Sight {
             depth_mm: interval.enter_mm + means.at_mm,
             normal_world: means.normal_world.try_normalize().unwrap_or(-dir_world),
-            value: means.value,
+            value: means.value + intercept,
             kind,
             ..seen
         }

@@ -94,9 +94,11 @@ mod tests {
         }
         assert!(check(&device(1999, 2000), VoxelType::I16).is_err());
         assert!(check(&device(2000, 1999), VoxelType::I16).is_err());
-        // No size is too large to be counted.
-        let huge = Dims::new([u32::MAX.into(), u32::MAX.into(), 1]).unwrap();
-        assert!(check_volume(&device(u64::MAX / 2, u64::MAX / 2), huge, VoxelType::F32).is_err());
+        // The largest volume is counted right.
+        let huge = Dims::new([Dims::MAX_AXIS, Dims::MAX_AXIS, 256]).unwrap();
+        let gives = |bytes| check_volume(&device(bytes, bytes), huge, VoxelType::F32);
+        assert!(gives((1 << 42) - 1).is_err());
+        assert_eq!(gives(1 << 42), Ok(()));
     }
 
     #[test]

@@ -439,7 +439,7 @@ fn names_that_would_be_taken_for_another_are_refused() {
     }
     let said = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
     assert!(
-        said.contains("'refine' means nothing in any mode that is compared: mip"),
+        said.contains("'refine' does not go with mode 'mip'"),
         "{said}"
     );
     // The control: alone each of these is fine, and a file's modes are those that are compared.

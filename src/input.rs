@@ -13,8 +13,21 @@ pub const LONGEST_TEXT: u64 = 1 << 20;
 /// The text in the file; `doing` says what it is read for (`read the scene`).
 ///
 /// # Errors
-/// It cannot be read, is longer than [`LONGEST_TEXT`], or is not UTF-8; a pipe that nobody writes into.
+/// As [`bytes`]; it is not UTF-8.
 pub fn text(path: &Path, doing: &str) -> Result<String> {
+    String::from_utf8(bytes(path, doing)?).map_err(|_| {
+        Error::input(format!(
+            "{}: cannot {doing}: it is not text (UTF-8)",
+            path.display()
+        ))
+    })
+}
+
+/// As [`text`], whatever its bytes are.
+///
+/// # Errors
+/// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nobody writes into.
+pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
     let failed = |cause: io::Error| Error::reading(path, doing, &cause);
     let refused = |why: String| Error::input(format!("{}: cannot {doing}: {why}", path.display()));
     let file = open(path).map_err(failed)?;
@@ -32,7 +45,7 @@ pub fn text(path: &Path, doing: &str) -> Result<String> {
     if bytes.is_empty() && !is_file {
         return Err(refused("it is empty, or nobody writes into it".into()));
     }
-    String::from_utf8(bytes).map_err(|_| refused("it is not text (UTF-8)".into()))
+    Ok(bytes)
 }
 
 /// Opens a file for reading without waiting: a pipe that nobody has opened for writing is at its end.

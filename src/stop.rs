@@ -52,7 +52,7 @@ pub enum Signal {
 /// Calls `heard` at every signal, on a thread of its own, until it gives what the process ends as.
 fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
     let failed =
-        |cause: std::io::Error| Error::failed(format!("signals cannot be caught: {cause}"));
+        |cause: std::io::Error| Error::resource(format!("signals cannot be caught: {cause}"));
     let mut signals = Signals::new([SIGINT, SIGTERM]).map_err(failed)?;
     let listener = thread::Builder::new().name("signals".into());
     let listening = listener.spawn(move || {

@@ -84,8 +84,11 @@ fn shortened(command: Command, name: &str) -> Command {
         let width = group.map_or(0, |(_, width)| *width);
         shortened_option(argument, &own, WIDTH.saturating_sub(MARGINS + width))
     });
-    let whole = command.get_after_help().map(ToString::to_string);
-    let whole = whole.unwrap_or_default();
+    let whole = command
+        .get_after_long_help()
+        .or(command.get_after_help())
+        .map(ToString::to_string)
+        .unwrap_or_default();
     let mut short = String::new();
     if let Some(example) = first_example(&whole) {
         short.push_str(&format!("Example:\n  {example}\n\n"));

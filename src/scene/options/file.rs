@@ -49,7 +49,12 @@ impl SceneFile {
     /// # Errors
     /// An unreadable file, one that is no text.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = input::text(path, "read the scene")?;
+        let text = String::from_utf8(input::bytes(path, "read the scene")?).map_err(|_| {
+            Error::input(format!(
+                "{}: not a scene: neither a text, which is TOML in UTF-8, nor a .png or .exr that carries one",
+                path.display()
+            ))
+        })?;
         Ok(Self {
             text,
             place: path.display().to_string(),

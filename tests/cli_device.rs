@@ -120,9 +120,15 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
             !passes.is_empty() && passes.iter().all(|p| text(&p["name"]) && ms(&p["ms"]))
         })
     };
+    // What is proven is of surfaces alone.
+    let layers = if stats["scene"]["mode"] == "iso" {
+        14
+    } else {
+        13
+    };
     let names = |v: &Value| {
         v.as_array()
-            .is_some_and(|a| a.len() == 14 && a.iter().all(text))
+            .is_some_and(|a| a.len() == layers && a.iter().all(text))
     };
     type Check<'a> = &'a dyn Fn(&Value) -> bool;
     let checks: [(&str, Check); 28] = [
@@ -337,7 +343,7 @@ fn an_inverted_window_is_the_negative_on_device_and_reference() {
                 assert_eq!((up, down), (0, 0), "{mode} {sampling} {at}");
             }
         }
-        assert!(greys > 20 || mode == "minip", "{mode} {sampling}: {greys}");
+        assert!(greys > 8 || mode == "minip", "{mode} {sampling}: {greys}");
         // The control: the picture is not its own negative.
         assert_ne!(up, down, "{mode}");
         // What is seen stays what it is.

@@ -175,7 +175,7 @@ fn completions_and_the_manual_hold_every_command_and_option() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = place.done(&format!("completion {shell}"));
         assert!(
-            script.contains("--lmip-threshold") && script.contains("replay"),
+            script.contains("lmip-threshold") && script.contains("replay"),
             "{shell}"
         );
     }

@@ -119,7 +119,7 @@ fn levels(dims: Dims, leaf: Leaf) -> Result<Vec<Level>> {
         size = size.map(|n| n.div_ceil(2));
     }
     if offset > u64::from(u32::MAX) {
-        return Err(Error::failed(format!(
+        return Err(Error::usage(format!(
             "an octree of {offset} nodes over {dims} voxels is too large"
         ))
         .hint("choose a larger --octree-leaf"));

@@ -19,7 +19,7 @@ use crate::with_voxels;
 /// Needs one f32 volume of memory besides the input.
 ///
 /// # Errors
-/// Usage: `sigma_mm` is negative, not finite, or longer than [`Dims::MAX_AXIS`] voxels. Failed:
+/// Usage: `sigma_mm` is negative, not finite, or longer than [`Dims::MAX_AXIS`] voxels. Resource:
 /// not enough memory.
 pub fn smooth(volume: &Volume, sigma_mm: f64, progress: &dyn Progress) -> Result<Volume> {
     let dims = volume.dims();

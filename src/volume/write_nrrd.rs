@@ -98,7 +98,7 @@ fn header(volume: &Volume, type_name: &str, endian: &str, gzip: bool) -> String 
 fn physical_voxels(volume: &Volume) -> Result<Voxels> {
     let range = volume.range();
     if range.min.abs().max(range.max.abs()) > f64::from(f32::MAX) {
-        return Err(Error::failed(format!(
+        return Err(Error::input(format!(
             "the values {} to {} do not fit single precision",
             range.min, range.max
         )));

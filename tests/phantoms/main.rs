@@ -67,7 +67,7 @@ fn senseless_shapes_are_refused() {
     assert_eq!(refused(Vessels, &|s| s.tip_radius_mm = Some(1e-9)), usage);
     assert_eq!(refused(Sphere, &|s| s.radius_mm = Some(1e300)), None);
     let huge = PhantomSpec::new(Sphere, Dims::new([1 << 13; 3]).unwrap());
-    assert_eq!(phantom(&huge).unwrap_err().kind(), ErrorKind::Resource);
+    assert_eq!(phantom(&huge).unwrap_err().kind(), ErrorKind::Usage);
 }
 
 #[test]

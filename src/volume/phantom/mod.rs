@@ -33,8 +33,8 @@ pub struct Phantom {
 /// Makes a phantom.
 ///
 /// # Errors
-/// Usage: a length, spacing or noise out of its domain, or one that the kind does not have. Failed:
-/// more voxels than memory, or than 16 GiB.
+/// Usage: a length, spacing or noise out of its domain, or one that the kind does not have; more than
+/// 16 GiB of voxels. Resource: more than there is memory.
 pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     spec.check()?;
     let centre = spec.centre_index();

@@ -99,7 +99,7 @@ impl PhantomSpec {
 
     /// # Errors
     /// Usage: a length that is not positive, an absurd spacing, a negative noise, an axis beyond 2,
-    /// a shape parameter that the kind does not have. Failed: more voxels than a phantom may have.
+    /// a shape parameter that the kind does not have, more voxels than a phantom may have.
     pub(super) fn check(&self) -> Result<()> {
         use PhantomKind::{Blob, Noise, Slab, Sphere, Vessels};
         let lengths: [(&str, Option<f64>, &[PhantomKind]); 4] = [
@@ -146,7 +146,7 @@ impl PhantomSpec {
             )));
         }
         if self.dims.voxels() * self.voxel_type.bytes() as u64 > MAX_BYTES {
-            return Err(Error::failed(format!(
+            return Err(Error::usage(format!(
                 "a phantom of {} {} voxels is larger than 16 GiB",
                 self.dims, self.voxel_type
             )));

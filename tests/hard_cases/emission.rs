@@ -133,11 +133,7 @@ fn gaussian() {
     // What lies behind is not hidden.
     let not_hidden = kernel(
         "lib/gather.clh",
-        &[
-            ("light.x * gathered->transmission", "light.x"),
-            ("light.y * gathered->transmission", "light.y"),
-            ("light.z * gathered->transmission", "light.z"),
-        ],
+        &[("weighted(light, gathered->transmission)", "light")],
     );
     judge(
         "emission::gaussian",

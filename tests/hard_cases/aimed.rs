@@ -158,8 +158,8 @@ fn a_ray_begins_in_the_cell_in_which_it_enters() {
     };
     let enters = |x: f32, dir_x: f32| ([x, 9.0, 1.5], [dir_x, -1.0, 0.0]);
     let rays = [
-        // By the face y = 3 at x = 2 - 2^-25, which single precision takes for 2, and at 2 + 2^-24.
-        enters(0.5 - (-25_f32).exp2(), 0.25),
+        // By the face y = 3 at x = 2 - 2^-24, which single precision takes for 2, and at 2 + 2^-24.
+        enters(0.5 - (-24_f32).exp2(), 0.25),
         enters(0.5 + (-24_f32).exp2(), 0.25),
         // Beside the wall, in it, and from it on.
         enters(2.0 - (-23_f32).exp2(), 0.0),

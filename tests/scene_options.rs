@@ -132,7 +132,8 @@ fn defaults_are_made_for_the_robust_range() {
         other => panic!("{other:?}"),
     };
     assert_eq!(ends(&["--mode", "dvr", "--tf", "3dra"]), (-100.0, 300.0));
-    let note = "the defaults are made for the values -100 to 300: a few far-away ones, or padding, reach -3024 to 30000";
+    let note =
+        "the defaults cover the values -100 to 300: outliers or padding reach from -3024 to 30000";
     let is_noted = |line: &[&str]| of(line).notes.iter().any(|found| found == note);
     for line in [&["--mode", "mip"][..], &["--mode", "dvr"], &[]] {
         assert!(is_noted(line), "{line:?}");

@@ -293,7 +293,7 @@ impl SceneOptions {
         if subject.robust_range != subject.range && given.takes_robust_range() {
             let (robust, whole) = (subject.robust_range, subject.range);
             notes.push(format!(
-                "the defaults are made for the values {} to {}: a few far-away ones, or padding, reach {} to {}",
+                "the defaults cover the values {} to {}: outliers or padding reach from {} to {}",
                 within(robust.min),
                 within(robust.max),
                 within(whole.min),

@@ -15,6 +15,8 @@ trait Wide: Pod + Send + Sync + PartialOrd {
     fn nearest(self) -> f64;
     /// `self − offset`, rounded once to double precision.
     fn above(self, offset: f64) -> f64;
+    /// What `kept`, counted from the offset, leaves of it.
+    fn left_over(self, offset: f64, kept: f32) -> f64;
 }
 
 macro_rules! whole {
@@ -27,6 +29,10 @@ macro_rules! whole {
             // Offsets are whole too, and i128 holds every difference.
             fn above(self, offset: f64) -> f64 {
                 (i128::from(self) - offset as i128) as f64
+            }
+
+            fn left_over(self, offset: f64, kept: f32) -> f64 {
+                (i128::from(self) - offset as i128 - kept as i128) as f64
             }
         }
     )*};
@@ -41,6 +47,10 @@ impl Wide for f64 {
 
     fn above(self, offset: f64) -> f64 {
         self - offset
+    }
+
+    fn left_over(self, offset: f64, kept: f32) -> f64 {
+        self - offset - f64::from(kept)
     }
 }
 
@@ -123,7 +133,7 @@ impl Survey {
             if near.is_finite() {
                 survey.min = survey.min.min(near);
                 survey.max = survey.max.max(near);
-                survey.fits &= number.above(f64::from(near as f32)) == 0.0;
+                survey.fits &= number.left_over(0.0, near as f32) == 0.0;
                 survey.whole &= near.fract() == 0.0;
             }
         }
@@ -165,9 +175,8 @@ impl Survey {
 
 /// A number as it is kept, with what that loses.
 fn single<T: Wide>(number: T, rescale: Rescale, loss: &mut Loss) -> f32 {
-    let wide = number.above(rescale.intercept);
-    let single = wide as f32;
-    let lost = (wide - f64::from(single)).abs();
+    let single = number.above(rescale.intercept) as f32;
+    let lost = number.left_over(rescale.intercept, single).abs();
     if lost == 0.0 || !number.nearest().is_finite() {
         return single;
     }

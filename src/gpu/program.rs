@@ -164,13 +164,13 @@ impl<'a> Plan<'a> {
         let path = self.kept.as_deref()?;
         let binary = binary::read(path)?;
         crash::suspect(path);
-        let kernel = self.from_binary(device, &binary)?;
+        let kernel = self.taken_from(device, &binary)?;
         asked_for(path);
         Some(kernel)
     }
 
     /// The kernel of a built program; nothing where the driver does not take it.
-    fn from_binary(&self, device: &Device, binary: &[u8]) -> Option<Kernel> {
+    fn taken_from(&self, device: &Device, binary: &[u8]) -> Option<Kernel> {
         let devices = [device.device_id()];
         let context = device.context();
         let program = core::create_program_with_binary(context, &devices, &[binary]).ok()?;
@@ -219,7 +219,7 @@ impl<'a> Plan<'a> {
     /// The kernel that another process built, or could not.
     fn answered(&self, device: &Device, answer: Answer) -> Result<Kernel> {
         if let Answer::Built(binary) = answer
-            && let Some(kernel) = self.from_binary(device, &binary)
+            && let Some(kernel) = self.taken_from(device, &binary)
         {
             self.keep(&binary);
             return Ok(kernel);

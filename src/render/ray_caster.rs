@@ -138,7 +138,7 @@ impl<'a> RayCaster<'a> {
     }
 
     fn pass(&mut self, variant: Variant) -> &Arc<Pass> {
-        if !self.built.contains_key(&variant) {
+        self.built.entry(variant).or_insert_with(|| {
             let signature = vec![
                 input_of("voxels", voxel_cl_name(variant.voxel)),
                 input::<u8>("node_class"),
@@ -159,9 +159,8 @@ impl<'a> RayCaster<'a> {
             let defines = defines.with("CERTIFICATE", 1);
             let pass = Pass::new("test", "aimed_rays", defines, signature);
             let pass = pass.with_tile([lanes.get() as usize, 1]);
-            self.built.insert(variant, Arc::new(pass));
-        }
-        &self.built[&variant]
+            Arc::new(pass)
+        })
     }
 }
 

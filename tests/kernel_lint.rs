@@ -403,6 +403,8 @@ fn the_switches_are_read_from_the_kernels() {
             ("GRADIENT", 4),
             ("HOMOGENEOUS", 2),
             ("LANES", 3),
+            ("LAYERS", 2),
+            ("NORMALS", 2),
             ("QUADRATURE", 6),
             ("SHADED", 2)
         ])

@@ -339,7 +339,7 @@ impl FromStr for Axis {
 
     fn from_str(text: &str) -> Result<Self> {
         let is_it = |name: &&str| name.eq_ignore_ascii_case(text.trim());
-        let found = ["x", "y", "z"].iter().position(|name| is_it(&name));
+        let found = ["x", "y", "z"].iter().position(is_it);
         found
             .map(Self)
             .ok_or_else(|| Error::usage(format!("'{text}' is not an axis: write x, y or z")))

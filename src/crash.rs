@@ -35,7 +35,7 @@ mod signals {
     use std::os::unix::ffi::OsStrExt;
     use std::path::Path;
     use std::ptr::null_mut;
-    use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicUsize, Ordering};
 
     use crate::abrupt;
     use crate::error::ErrorKind;
@@ -56,9 +56,11 @@ mod signals {
     static CLAUSE: AtomicPtr<c_char> = AtomicPtr::new(null_mut());
     static SUSPECTS: [AtomicPtr<c_char>; MOST_SUSPECTS] =
         [const { AtomicPtr::new(null_mut()) }; MOST_SUSPECTS];
+    static CATCHING: AtomicBool = AtomicBool::new(false);
     static SUSPECTS_SET: AtomicUsize = AtomicUsize::new(0);
 
     pub fn catch() {
+        CATCHING.store(true, Ordering::Relaxed);
         for (signal, _) in SIGNALS {
             // SAFETY: the action is whole: zero is its empty mask and no flags. The handler calls only what
             // a handler may call. It runs on the stack that Rust's threads set aside, where there is one.
@@ -78,14 +80,20 @@ mod signals {
 
     pub fn set_clause(clause: &str) {
         let clause = clause.replace(char::is_control, " ");
-        if let Some(clause) = leaked(clause.as_bytes()) {
+        if CATCHING.load(Ordering::Relaxed)
+            && let Some(clause) = leaked(clause.as_bytes())
+        {
             CLAUSE.store(clause, Ordering::Release);
         }
     }
 
     pub fn suspect(path: &Path) {
+        if !CATCHING.load(Ordering::Relaxed) {
+            return;
+        }
         let place = SUSPECTS_SET.fetch_add(1, Ordering::Relaxed);
-        if let (Some(slot), Some(path)) = (SUSPECTS.get(place), leaked(path.as_os_str().as_bytes()))
+        if let Some(slot) = SUSPECTS.get(place)
+            && let Some(path) = leaked(path.as_os_str().as_bytes())
         {
             slot.store(path, Ordering::Release);
         }

@@ -403,3 +403,54 @@ fn a_large_volume_takes_little_memory_beyond_its_file() {
     assert!(peak > VOXELS / 8);
     assert!(stats["counts"]["hits"].as_u64().unwrap() > 1000);
 }
+
+/// Rendered by a device of 1 GiB, where the driver can be told that it has no more.
+fn by_a_small_device(place: &Place, line: &str) -> std::process::Output {
+    let mut command = place.command(line);
+    command.env("POCL_MEMORY_LIMIT", "1");
+    command.env("ANGIORAY_KERNEL_CACHE", place.path("kernels"));
+    command.output().unwrap()
+}
+
+#[test]
+fn a_device_that_is_too_small_is_reported_before_reading_and_building() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    if !common::device().is_some_and(|d| d.info().platform.contains("Portable Computing")) {
+        return common::skip("this driver's memory cannot be limited");
+    }
+    // 2 GiB announced and none of it there: whoever reads sees damage.
+    let header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 512\nencoding: gzip\nendian: little\n\n";
+    place.write("large.nrrd", &format!("{header}no gzip"));
+    let line = format!("render large.nrrd -o a.png --iso 1 {device}");
+    let output = by_a_small_device(&place, &line);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(74), "{said}");
+    for part in [
+        "error: large.nrrd: 1024x1024x512",
+        "2147483648 bytes",
+        "the device '",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    // A picture that fits in no device: the volume is read by then, but nothing is built.
+    let line = format!("render blob.nrrd -o a.png --mode mip --size 8000 {device}");
+    let output = by_a_small_device(&place, &line);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(74), "{said}");
+    assert!(
+        said.contains("8000x8000 pixels") && said.contains("smaller --size"),
+        "{said}"
+    );
+    assert_eq!(std::fs::read_dir(place.path("kernels")).unwrap().count(), 0);
+    assert!(!place.path("a.png").exists());
+    // The controls: what needs no device meets the damage, and what is small is rendered.
+    let line = "render large.nrrd -o a.png --iso 1 --device reference";
+    let output = by_a_small_device(&place, line);
+    assert_eq!(output.status.code(), Some(65), "{}", stderr(&output));
+    let line = format!("render blob.nrrd -o a.png --mode mip --size 8 {device}");
+    let output = by_a_small_device(&place, &line);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(std::fs::read_dir(place.path("kernels")).unwrap().count() > 0);
+}

@@ -145,7 +145,7 @@ impl Engine {
             name => {
                 let choice = name.as_ref().map_or("", |DeviceName(name)| name);
                 let device = Device::select(choice)?.heard_by(Bars::new());
-                device.notes().for_each(note);
+                device.note().iter().for_each(note);
                 let options = Options {
                     work_group: options.work_group.map(Into::into),
                     lanes: options.lanes,

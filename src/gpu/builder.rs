@@ -24,7 +24,7 @@ use super::{Device, DeviceInfo, binary, program};
 /// The first argument of a builder; the second is its folder.
 const ARGUMENT: &str = "--build-kernels";
 
-/// Where the driver of a builder keeps what it builds, unless the user names a folder.
+/// Where the driver of a builder keeps what it builds.
 const DRIVERS: &str = "driver";
 
 /// What the driver of a builder said.
@@ -68,8 +68,6 @@ pub enum Answer {
 /// Has kernels built, one after another, by a process that is started when it is first needed.
 pub struct Builders<'a> {
     arranged: &'a Arranged,
-    /// The user's folder for PoCL. What is in it may be damaged: it is left when a builder fails.
-    users_folder: Option<&'a Path>,
     current: Option<Builder>,
 }
 
@@ -77,7 +75,6 @@ impl<'a> Builders<'a> {
     pub fn new(arranged: &'a Arranged) -> Self {
         Self {
             arranged,
-            users_folder: arranged.users_folder(),
             current: None,
         }
     }
@@ -87,32 +84,15 @@ impl<'a> Builders<'a> {
     /// # Errors
     /// The kernel does not build; the driver ended the process; it is time to stop.
     pub fn build(&mut self, request: &Request, no_longer_wanted: &AtomicBool) -> Result<Answer> {
-        loop {
-            let builder = match &mut self.current {
-                Some(builder) => builder,
-                none => match Builder::start(self.arranged, self.users_folder) {
-                    Some(builder) => none.insert(builder),
-                    None => return Ok(Answer::NotHere),
-                },
-            };
-            match builder.build(request, no_longer_wanted)? {
-                Outcome::Answered(answer) => return Ok(answer),
-                Outcome::Ended(status) => {
-                    let error = builder.failure(request, status);
-                    self.current = None;
-                    if self.users_folder.take().is_none() {
-                        return Err(error);
-                    }
-                }
-            }
-        }
+        let builder = match &mut self.current {
+            Some(builder) => builder,
+            none => match Builder::start(self.arranged) {
+                Some(builder) => none.insert(builder),
+                None => return Ok(Answer::NotHere),
+            },
+        };
+        builder.build(request, no_longer_wanted)
     }
-}
-
-enum Outcome {
-    Answered(Answer),
-    /// The driver ended the process.
-    Ended(ExitStatus),
 }
 
 /// One process.
@@ -124,7 +104,7 @@ struct Builder {
 
 impl Builder {
     /// Nothing where no process can be started.
-    fn start(arranged: &Arranged, users_folder: Option<&Path>) -> Option<Self> {
+    fn start(arranged: &Arranged) -> Option<Self> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let folder = arranged.folder().ok()?.join(format!("builder-{number}"));
@@ -139,7 +119,7 @@ impl Builder {
         command
             .arg(ARGUMENT)
             .arg(&folder)
-            .env(POCL_FOLDER, users_folder.unwrap_or(&drivers))
+            .env(POCL_FOLDER, &drivers)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(File::create(folder.join(SAID)).ok()?);
@@ -153,7 +133,7 @@ impl Builder {
         })
     }
 
-    fn build(&mut self, request: &Request, no_longer_wanted: &AtomicBool) -> Result<Outcome> {
+    fn build(&mut self, request: &Request, no_longer_wanted: &AtomicBool) -> Result<Answer> {
         let failed = |cause: &dyn std::fmt::Display| {
             Error::resource(format!("a process that builds kernels failed: {cause}"))
         };
@@ -168,10 +148,10 @@ impl Builder {
         loop {
             if let Ok(bytes) = fs::read(&answer) {
                 let _ = fs::remove_file(&answer);
-                return Ok(Outcome::Answered(unpacked(&bytes)?));
+                return unpacked(&bytes);
             }
             if let Some(status) = self.child.try_wait().map_err(|cause| failed(&cause))? {
-                return Ok(Outcome::Ended(status));
+                return Err(self.failure(request, status));
             }
             if stop::asked() || no_longer_wanted.load(Ordering::Relaxed) {
                 return Err(Error::stopped("stopped while kernels were built"));

@@ -3,6 +3,7 @@
 use std::ffi::CString;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use ocl::core::{
     self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId,
@@ -121,11 +122,9 @@ impl Device {
         self
     }
 
-    /// What the user may want to know of the folders in which kernels are built and kept.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
-        let arranged = process::arranged().and_then(Arranged::note);
-        let kept = self.binaries.note().map(str::to_owned);
-        arranged.into_iter().chain(kept)
+    /// Why built kernels are not kept from run to run, where nobody asked for that.
+    pub fn note(&self) -> Option<&str> {
+        self.binaries.note()
     }
 
     fn open(platform: PlatformId, device_id: DeviceId, info: DeviceInfo) -> Result<Self> {
@@ -206,6 +205,9 @@ impl Device {
 /// Every usable device with its platform. Devices that cannot be asked are left out.
 fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
+    // Drivers set themselves up at the first call, and not all of them can do it in two threads at once.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = process::arranged().map(Arranged::folder);
     loader::open().map_err(|reason| {
         Error::no_device(format!("no OpenCL library is installed ({reason})")).hint(INSTALL)

@@ -6,16 +6,15 @@
 //! [`begin`] was not called, kernels are built in the process that wants them, and its environment is left
 //! as it is.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::OnceLock;
-
-use crate::output::check_folder;
 
 use super::builder;
 use super::scratch::Scratch;
 
-/// Where PoCL keeps what it builds, in its own way.
+/// Where PoCL keeps what it builds, in its own way. What the user names is not used: PoCL loads what lies
+/// there without a check.
 pub(super) const POCL_FOLDER: &str = "POCL_CACHE_DIR";
 
 /// Asks PoCL for one kernel for work-groups of all sizes. Its kernels of one size each are no faster here,
@@ -28,8 +27,6 @@ static ARRANGED: OnceLock<Arranged> = OnceLock::new();
 pub(super) struct Arranged {
     /// For what drivers write; nothing where there is no place for it.
     scratch: Option<Scratch>,
-    /// The folder that the user names for PoCL, for builders.
-    users_folder: Option<PathBuf>,
 }
 
 /// What the program's `main` does first: sets what drivers are asked for through the environment. The
@@ -48,16 +45,12 @@ pub unsafe fn begin() -> Process {
     if is_builder {
         return Process { is_builder };
     }
-    let users_folder = std::env::var_os(POCL_FOLDER).filter(|folder| !folder.is_empty());
     let scratch = Scratch::choose();
     if let Some(scratch) = &scratch {
         // SAFETY: as this function demands.
         unsafe { std::env::set_var(POCL_FOLDER, scratch.path()) };
     }
-    let _ = ARRANGED.set(Arranged {
-        scratch,
-        users_folder: users_folder.map(PathBuf::from),
-    });
+    let _ = ARRANGED.set(Arranged { scratch });
     Process { is_builder }
 }
 
@@ -99,21 +92,5 @@ impl Arranged {
             Ok(()) => Ok(scratch.path()),
             Err(cause) => Err(format!("{}: {cause}", scratch.path().display())),
         }
-    }
-
-    /// The folder that the user names for PoCL, where it takes files.
-    pub fn users_folder(&self) -> Option<&Path> {
-        let named = self.users_folder.as_deref();
-        named.filter(|folder| check_folder(folder).is_ok())
-    }
-
-    /// What the user may want to know: a folder that he names for PoCL takes no files.
-    pub fn note(&self) -> Option<String> {
-        let named = self.users_folder.as_deref()?;
-        let refused = check_folder(named).err()?;
-        let instead = self.scratch.as_ref()?.path().display();
-        Some(format!(
-            "{POCL_FOLDER}: {refused}; PoCL is given '{instead}', which is removed at the end"
-        ))
     }
 }

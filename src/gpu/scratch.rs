@@ -36,10 +36,11 @@ impl Scratch {
     /// A folder in the first place where files can be made, and loaded as programs; it is not made yet.
     /// Nothing where there is no such place.
     pub fn choose() -> Option<Self> {
-        let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
-        // In memory first: PoCL waits for the disk after each file.
+        let named = |name| std::env::var_os(name).map(PathBuf::from);
+        // Where the user says; else in memory first, since PoCL waits for the disk after each file.
         let places = [
-            runtime,
+            named("TMPDIR"),
+            named("XDG_RUNTIME_DIR"),
             Some("/dev/shm".into()),
             Some(std::env::temp_dir()),
             kept::users_folder(),

@@ -6,20 +6,6 @@ use std::process::Output;
 
 use crate::Place;
 
-/// All files below a folder, by path.
-fn files_below(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        match path.is_dir() {
-            true => found.extend(files_below(&path)),
-            false => found.push(path),
-        }
-    }
-    found.sort();
-    found
-}
-
 /// Damages a file's bytes.
 type Damage = fn(&mut Vec<u8>);
 
@@ -46,26 +32,36 @@ fn said(output: &Output) -> String {
 }
 
 #[test]
-fn what_the_driver_keeps_may_be_damaged() {
+fn the_driver_leaves_nothing_that_could_be_damaged_and_uses_nothing_that_is() {
     let Some(place) = Place::new() else { return };
-    let drivers = place.path("drivers");
+    let (temporary, drivers) = (place.path("temporary"), place.path("drivers"));
+    fs::create_dir(&temporary).unwrap();
     fs::create_dir(&drivers).unwrap();
-    let render = || {
-        let mut command = place.simple_command();
-        command.env("POCL_CACHE_DIR", &drivers);
-        command.env("ANGIORAY_KERNEL_CACHE", "off");
-        let output = command.output().unwrap();
-        assert!(output.status.success(), "{output:?}");
-        fs::read(place.path("picture.png")).unwrap()
+    fs::write(drivers.join("file"), "damaged").unwrap();
+    let names = |folder: &Path| {
+        let entries = fs::read_dir(folder).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.collect::<Vec<String>>()
     };
-    let own = render();
-    let files = files_below(&drivers);
-    if files.is_empty() {
-        return crate::common::skip("this driver keeps nothing");
-    }
-    for (name, how) in DAMAGES {
-        damage(&files_below(&drivers), how);
-        assert_eq!(render(), own, "{name}");
+    // What a process left that is no more.
+    let left = temporary.join("angioray-driver-0");
+    fs::create_dir(&left).unwrap();
+    fs::write(left.join("held"), "").unwrap();
+    let own = place.rendered(&mut place.simple_command());
+    for kernels in ["kept", "elsewhere", "off"] {
+        let mut command = place.simple_command();
+        let kernels = if kernels == "off" {
+            kernels.into()
+        } else {
+            place.path(kernels)
+        };
+        command
+            .env("POCL_CACHE_DIR", &drivers)
+            .env("TMPDIR", &temporary)
+            .env("ANGIORAY_KERNEL_CACHE", &kernels);
+        assert_eq!(place.rendered(&mut command), own, "{}", kernels.display());
+        assert_eq!(names(&temporary), [""; 0], "{}", kernels.display());
+        assert_eq!(names(&drivers), ["file"], "{}", kernels.display());
     }
 }
 

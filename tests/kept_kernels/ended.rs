@@ -92,7 +92,6 @@ fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
         .arg("-o")
         .arg(place.path("frames/%d.png"))
         .env("ANGIORAY_KERNEL_CACHE", place.path("kept"))
-        .env("POCL_CACHE_DIR", place.path("drivers"))
         .env("PATH", path)
         .stderr(Stdio::piped())
         .spawn()
@@ -102,6 +101,10 @@ fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
     while !line.contains("building kernels 0 of ") {
         line.clear();
         assert!(told.read_line(&mut line).unwrap() > 0, "it ended by itself");
+    }
+    while !place.path("linkers").exists() {
+        assert_eq!(child.try_wait().unwrap(), None, "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
     }
     let pid = child.id().to_string();
     let sent = Command::new("kill").args(["-TERM", &pid]).status();

@@ -58,26 +58,6 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
 }
 
 #[test]
-fn a_folder_for_the_driver_that_cannot_be_written_is_reported_and_replaced() {
-    let Some(place) = Place::new() else { return };
-    let file = place.path("file");
-    fs::write(&file, "").unwrap();
-    let render = |folder: &Path| {
-        let mut command = place.simple_command();
-        command.env("POCL_CACHE_DIR", folder);
-        done(&place, &mut command)
-    };
-    let told = render(&file.join("below"));
-    assert!(told.contains("note: POCL_CACHE_DIR"), "{told}");
-    assert!(
-        !named(&told, "angioray-driver-").unwrap().exists(),
-        "{told}"
-    );
-    // The control.
-    assert!(!render(&place.path("drivers")).contains("POCL_CACHE_DIR"));
-}
-
-#[test]
 fn an_empty_name_keeps_no_kernels() {
     let Some(place) = Place::new() else { return };
     let render = |name: &str| {

@@ -49,7 +49,6 @@ fn a_setting_that_no_line_of_ours_can_name_is_refused() {
     for name in ["two\\nlines", &"long".repeat(200)] {
         let said = hello(name).start().err().unwrap().to_string();
         assert!(said.contains("control character"), "{said}");
-        assert!(!said.contains('\n'), "{said}");
     }
     // The control: any other goes back as it was said.
     let peer = hello("step 0.5, \u{fc}ber").start().unwrap();

@@ -199,3 +199,45 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::ImageSize;
+    use crate::frame::error::{Entry, Quantity};
+
+    #[test]
+    fn a_report_opens_on_the_fastest_whose_error_can_be_seen() {
+        let map = |entry: Entry| ErrorMap {
+            quantity: Quantity::Depth,
+            size: ImageSize::new(1, 1).unwrap(),
+            entries: vec![entry],
+            scale: 1.0,
+        };
+        let row = |ms: f64| {
+            let mut row = Row::new(Mode::Iso, "a", "angioray");
+            row.timed(&[crate::measure::FrameTime {
+                frame_ms: ms,
+                processor_ms: None,
+                render_ms: ms,
+                passes: Vec::new(),
+            }]);
+            row
+        };
+        let told = |all: &[(f64, Entry)]| {
+            let all = all.iter().map(|&(ms, entry)| (row(ms), map(entry)));
+            let all: Vec<(Row, ErrorMap)> = all.collect();
+            most_telling(all.iter().map(|(row, map)| (row, map)))
+        };
+        let (seen, unseen) = (Entry::Difference(-0.5), Entry::Difference(0.01));
+        assert_eq!(told(&[(3.0, seen), (1.0, unseen), (2.0, seen)]), Some(2));
+        assert_eq!(
+            told(&[(3.0, Entry::Missed), (1.0, Entry::Nothing)]),
+            Some(0)
+        );
+        assert_eq!(told(&[(3.0, Entry::Extra), (1.0, unseen)]), Some(0));
+        // The control: where no map shows anything the fastest is as good as any.
+        assert_eq!(told(&[(3.0, unseen), (1.0, unseen)]), Some(1));
+        assert_eq!(told(&[]), None);
+    }
+}

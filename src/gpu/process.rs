@@ -2,7 +2,7 @@
 //! own in which they build.
 //!
 //! A driver that builds kernels in the program's own process can end it, and cannot be stopped. So the
-//! program starts itself anew to build, as a [`super::builder`]. A library has no program to start: where
+//! program starts itself anew to build, as a builder (`gpu/builder.rs`). A library has no program to start: where
 //! [`begin`] was not called, kernels are built in the process that wants them, and its environment is left
 //! as it is.
 

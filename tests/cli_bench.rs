@@ -51,6 +51,7 @@ fn wrong_usage_says_what_there_is() {
     for (line, wanted) in [
         ("bench rays ball.nrrd", "takes no volumes"),
         ("bench vessels --rays 5", "no effect"),
+        ("bench vessels --seed 5", "no effect"),
         ("bench vessels --frames 5", "no effect"),
         ("bench b1 --peer true", "no effect"),
         ("bench speed --frames 0", "is not a whole number from 1 on"),
@@ -237,4 +238,7 @@ fn the_other_experiments_end_in_tables() {
     let rays = of("rays --rays 3000");
     let all = rows(&rays).pop().unwrap();
     assert_eq!((all[0], all[1], all[3]), ("all", "3000", "0"), "{rays}");
+    // The default seed, and another.
+    assert_eq!(of("rays --rays 3000 --seed 4"), rays);
+    assert_ne!(of("rays --rays 3000 --seed 5"), rays);
 }

@@ -29,21 +29,32 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         flags
     };
     let mut keys: Vec<String> = [
-        "render", "orbit", "compare", "bench", "info", "phantom", "devices",
+        "render", "orbit", "compare", "replay", "bench", "info", "phantom", "devices",
     ]
     .into_iter()
     .flat_map(command)
     .filter(|flag| flag != "scene")
     .collect();
     assert!(keys.len() > 40, "{keys:?}");
-    keys.extend(["volume", "kind", "experiment", "volumes"].map(str::to_owned));
+    keys.sort();
+    keys.dedup();
+    keys.extend(["volumes", "kind", "experiment", "image", "shell"].map(str::to_owned));
     for key in keys {
         // Of a wrong type for every key: accepted as a key, refused as a value by its command.
         place.write("keys.toml", &format!("\n{key} = {{ a = 1 }}\n"));
-        let refusals: Vec<String> = ["render", "orbit", "compare", "bench", "info", "phantom"]
-            .into_iter()
-            .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
-            .collect();
+        let refusals: Vec<String> = [
+            "render",
+            "orbit",
+            "compare",
+            "replay",
+            "bench",
+            "phantom",
+            "info",
+            "completion",
+        ]
+        .into_iter()
+        .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
+        .collect();
         let at = |said: &String| said.starts_with("error: keys.toml:2: ");
         assert!(refusals.iter().any(at), "{key}: {refusals:?}");
         let unknown = |said: &String| said.contains("no option of a scene");
@@ -53,7 +64,16 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
     for key in ["scene", "help", "phantom", "sparse"] {
         place.write("keys.toml", &format!("\n{key} = 1\n"));
         for command in [
-            "render", "orbit", "compare", "bench", "info", "phantom", "devices",
+            "render",
+            "orbit",
+            "compare",
+            "replay",
+            "bench",
+            "info",
+            "phantom",
+            "devices",
+            "completion",
+            "man",
         ] {
             let said = place.refused(&format!("{command} --scene keys.toml"), 2);
             assert!(said.starts_with("error: keys.toml:2: "), "{said}");

@@ -261,6 +261,17 @@ fn the_layers_are_those_of_the_reference() {
             "{mode}: {}",
             apart("value.V", 0.01)
         );
+        if mode == "dvr" {
+            for (name, limit) in [("depth.Z", 0.1), ("normal.X", 0.05), ("normal.Z", 0.05)] {
+                assert!(apart(name, limit) < 0.01, "{name}: {}", apart(name, limit));
+                assert!(
+                    channel(&ours, name)
+                        .iter()
+                        .any(|v| v.is_finite() && *v != 0.0),
+                    "{name}"
+                );
+            }
+        }
         // Where the extremum lies is ill-conditioned on a smooth blob; a surface is not.
         if mode == "iso" {
             assert!(apart("depth.Z", 0.05) < 0.01, "{}", apart("depth.Z", 0.05));
@@ -268,6 +279,83 @@ fn the_layers_are_those_of_the_reference() {
             let moved: Vec<f32> = channel(&ours, "depth.Z").iter().map(|z| z + 0.1).collect();
             assert!(share_apart(&moved, &channel(&truth, "depth.Z"), 0.05) > 0.05);
         }
+    }
+}
+
+/// A file of `tests/data/cases`.
+fn case(name: &str) -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cases");
+    format!("{folder}/{name}")
+}
+
+#[test]
+fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    let said_by = |line: &str| {
+        let output = place.run(line);
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        stderr(&output)
+    };
+    // Along the slab, whose width is a ten-thousandth of its height.
+    let view = format!(
+        "{} --mode dvr --size 16 --ortho 0.01 --stats s.json {device}",
+        case("flatx.nrrd")
+    );
+    let said = said_by(&format!("render {view} -o a.exr"));
+    assert!(
+        said.contains("quad = adaptive:0.001") && said.contains("samples per ray"),
+        "{said}"
+    );
+    let samples = place.json("s.json")["counts"]["samples"].as_u64().unwrap();
+    assert!(samples < 100_000, "{samples}");
+    let reference = view.replace(&device, "--device reference");
+    place.done(&format!("render {reference} -o b.exr"));
+    let (ours, truth) = (channels(&place, "a.exr"), channels(&place, "b.exr"));
+    for name in ["R", "G", "B", "A"] {
+        let apart = share_apart(&channel(&ours, name), &channel(&truth, name), 1e-3);
+        assert_eq!(apart, 0.0, "{name}");
+    }
+    assert!(channel(&truth, "A").iter().any(|&a| a > 0.05));
+    // Steps that are asked for: as many as were reported, here coarse ones.
+    let said = said_by(&format!("render {view} -o a.exr --step 10"));
+    assert!(
+        said.contains("samples per ray") && said.contains("in all"),
+        "{said}"
+    );
+    let stepped = place.json("s.json")["counts"]["samples"].as_u64().unwrap();
+    assert!(stepped > 10 * samples, "{stepped}");
+    // The control: of like spacings nothing is said.
+    let said = said_by(&format!(
+        "render blob.nrrd --mode dvr --size 16 -o c.exr {device}"
+    ));
+    assert!(!said.contains("per ray"), "{said}");
+}
+
+#[test]
+fn no_rule_shows_a_label_that_is_not_there() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    let (labels, band) = (case("mask02.nrrd"), case("band1.toml"));
+    let opaque = |more: &str| {
+        let line = format!("render {labels} --mode dvr --tf {band} --size 24 -o l.exr {device}");
+        place.done(&format!("{line} {more}"));
+        let alpha = channel(&channels(&place, "l.exr"), "A");
+        alpha.iter().filter(|&&a| a > 0.0).count()
+    };
+    for rule in [
+        "preintegrated",
+        "preintegrated --homogeneity 1 --homogeneity-rule range",
+        "adaptive",
+    ] {
+        assert_eq!(
+            opaque(&format!("--filter nearest --quad {rule}")),
+            0,
+            "{rule}"
+        );
+        assert!(opaque(&format!("--quad {rule}")) > 50, "{rule}");
     }
 }
 

@@ -2,9 +2,9 @@
 # Makes the report that the README shows, and the pictures of it, anew in docs/report. Needs Chromium for
 # the pictures. ANGIORAY names the program; without it a release build is made.
 set -euo pipefail
+program="${ANGIORAY:+$(realpath "$ANGIORAY")}"
 cd "$(dirname "$0")/.."
 
-program="${ANGIORAY:-}"
 if [ -z "$program" ]; then
     cargo build --release --locked
     program="$PWD/target/release/angioray"

@@ -23,6 +23,7 @@ mod sampling;
 mod setting;
 mod shown;
 mod subject;
+mod thresholds;
 mod tolerance;
 mod tone;
 mod values;

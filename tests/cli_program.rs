@@ -423,7 +423,7 @@ fn no_input_reaches_the_terminal_raw() {
 }
 
 #[test]
-fn json_on_stdout_is_the_same_value_without_what_a_terminal_obeys() {
+fn json_is_the_same_value_without_what_a_terminal_obeys() {
     let place = Place::with_ball();
     std::fs::copy(place.path("ball.nrrd"), place.path(FORGED)).unwrap();
     let output = place.command("info --json").arg(FORGED).output().unwrap();
@@ -431,6 +431,13 @@ fn json_on_stdout_is_the_same_value_without_what_a_terminal_obeys() {
     assert_eq!(obeyed(&text), []);
     let info: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(info["file"], FORGED);
+    // Statistics too, whose file may be a terminal.
+    let line = "render -o a.png --size 8 --iso 100 --device reference --stats s.json";
+    let output = place.command(line).arg(FORGED).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = std::fs::read_to_string(place.path("s.json")).unwrap();
+    assert_eq!(obeyed(&text), []);
+    assert_eq!(place.json("s.json")["volume"]["file"], FORGED);
 }
 
 #[test]

@@ -13,6 +13,8 @@ use crate::scene::SceneOptions;
 use crate::tolerance::ToleranceStats;
 use crate::volume::Volume;
 
+use super::terminal::write_json;
+
 #[derive(Serialize)]
 pub struct Stats<'a> {
     pub version: &'static str,
@@ -160,11 +162,10 @@ pub struct FrameStats {
     pub counts: Counts,
 }
 
-/// Writes statistics as JSON.
+/// Writes statistics as JSON, of whose strings a terminal obeys nothing: the file may be one.
 pub fn write(stats: &impl Serialize, path: &Path) -> Result<()> {
     write_atomically(path, |out| {
-        serde_json::to_writer_pretty(&mut *out, stats)
-            .map_err(std::io::Error::from)
+        write_json(out, stats)
             .and_then(|()| writeln!(out))
             .map_err(|cause| Error::writing(path, "write", &cause))
     })

@@ -139,7 +139,8 @@ fn is_obeyed(c: char) -> bool {
         || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}')
 }
 
-fn write_json(out: &mut dyn Write, document: &impl Serialize) -> io::Result<()> {
+/// Writes a JSON document as [`json_to_stdout`] does, without the line's end.
+pub fn write_json(out: &mut dyn Write, document: &impl Serialize) -> io::Result<()> {
     let form = EscapedJson(PrettyFormatter::new());
     document.serialize(&mut Serializer::with_formatter(out, form))?;
     Ok(())

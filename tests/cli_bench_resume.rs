@@ -174,7 +174,7 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
     // The control: the same kernels from elsewhere are no others.
     let said = told_with_kernels();
     assert!(said.contains("its protocol was"), "{said}");
-    let changed = kernels.join("lib/cubic.clh");
+    let changed = kernels.join("lib/volume/cubic.clh");
     let text = std::fs::read_to_string(&changed).unwrap();
     std::fs::write(&changed, text + "// another\n").unwrap();
     let said = told_with_kernels();

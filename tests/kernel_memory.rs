@@ -223,7 +223,7 @@ fn a_read_beside_the_volume_is_reported() {
     };
     let index = "(AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x);";
     let broken = "(AS_INDEX(z) * volume.ny + AS_INDEX(y) + volume.ny) * volume.nx + AS_INDEX(x);";
-    let under = under.with_broken("lib/voxels.clh", index, broken);
+    let under = under.with_broken("lib/volume/voxels.clh", index, broken);
     let volume = under.phantom("noise --size 3x5x7");
     let report = under.render(&volume, SMALL, "broken.exr");
     assert!(

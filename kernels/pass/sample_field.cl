@@ -3,18 +3,20 @@
 //
 // Skips nothing, stops nowhere, knows no clip planes. Writes value, the mean of a ray's samples in stored
 // units, and steps, their number: both 0 where the ray misses the volume or crosses less of it than a step.
-#include "lib/field.clh"
+#include "lib/ray/interval.clh"
+#include "lib/ray/source.clh"
+#include "lib/volume/field.clh"
 
-kernel void sample_field(VOXELS voxels, VolumeGrid volume, RayGrid rays, float step_mm,
+kernel void sample_field(VOXELS voxels, VolumeGrid volume, RAY_SOURCE, float step_mm,
                          global float *value, global uint *steps)
 {
-    Pixels pixels = tile_pixels(rays);
-    Ray ray = pixel_ray(rays, pixels);
+    Pixels pixels = RAY_PIXELS();
+    Ray ray = RAY_OF(pixels);
     Interval interval = volume_interval(volume, ray);
     Mask meets = pixels.inside & interval.enter < interval.exit;
     Floats enter = meets ? interval.enter : FLOATS(0.0f);
-    Floats way = meets ? interval.exit - enter : FLOATS(0.0f);
-    Ints count = AS_INTS(way / step_mm);
+    Floats length_mm = meets ? interval.exit - enter : FLOATS(0.0f);
+    Ints count = AS_INTS(length_mm / step_mm);
     Floats sum = FLOATS(0.0f);
     for (int k = 0; ANY(k < count); k++) {
         // In the middle of its step. Past a ray's end field_at stays in the last cell.

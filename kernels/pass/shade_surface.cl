@@ -1,8 +1,9 @@
 // The colour of each hit surface: linear light, premultiplied, opaque where something was hit.
 //
 // Reads kind of cast_surface and, with SHADED, normal of surface_normal. Writes color.
-#include "lib/plane.clh"
-#include "lib/shade.clh"
+#include "lib/ray/camera.clh"
+#include "lib/ray/planes.clh"
+#include "lib/light/shade.clh"
 
 kernel void shade_surface(RayGrid rays, Shading shading, const global uint *kind
 #if SHADED
@@ -11,21 +12,20 @@ kernel void shade_surface(RayGrid rays, Shading shading, const global uint *kind
                           , global float4 *color)
 {
     Pixels pixels = tile_pixels(rays);
-    Mask hit = pixels_ints(kind, pixels) != KIND_NOTHING;
+    Mask hit = read_ints(kind, pixels) != KIND_NOTHING;
     Floats4 seen = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
     if (ANY(hit)) {
         Floats3 rgb = {FLOATS(shading.color.x), FLOATS(shading.color.y), FLOATS(shading.color.z)};
 #if SHADED
-        Floats4 n = pixels_fours(normal, pixels);
+        Floats4 n = read_float4(normal, pixels);
         Floats3 facing = {n.x, n.y, n.z};
-        Ray ray = pixel_ray(rays, pixels);
-        Floats3 toward_eye = {-ray.dir_world.x, -ray.dir_world.y, -ray.dir_world.z};
-        rgb = reflect_light(shading, rgb, facing, toward_eye);
+        Ray ray = camera_ray(rays, pixels);
+        rgb = reflect_light(shading, rgb, facing, direction_to_eye(ray));
 #endif
         seen.x = hit ? rgb.x : seen.x;
         seen.y = hit ? rgb.y : seen.y;
         seen.z = hit ? rgb.z : seen.z;
         seen.w = hit ? FLOATS(1.0f) : seen.w;
     }
-    put_fours(color, pixels, seen);
+    scatter_float4(color, pixels, seen);
 }

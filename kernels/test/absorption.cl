@@ -1,6 +1,6 @@
 // The absorption per mm of each opacity.
 #define LANES 1
-#include "lib/transfer.clh"
+#include "lib/light/transfer.clh"
 
 kernel void absorption(uint count, float unit_length_mm, float most_absorption,
                        const global float *opacities, global float *per_mm)

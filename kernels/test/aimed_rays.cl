@@ -4,7 +4,7 @@
 // Reads the voxels, per octree node its CLASS_*, a bit per cell that may be crossed, and per ray its
 // origin and direction. Writes hit (in lengths of the direction from the origin; +inf: none), KIND_* and
 // CERTIFICATE_*.
-#include "lib/crossing.clh"
+#include "lib/find/crossing.clh"
 
 // Three numbers of four a ray.
 static inline Floats3 of_rays(const global float4 *rays, Ints i)
@@ -42,12 +42,14 @@ kernel void aimed_rays(VOXELS voxels, const global uchar *node_class, const glob
     ray.dir.y = exactly(dir.y);
     ray.dir.z = exactly(dir.z);
     ray.dir_world = dir;
-    ray.base_mm = FLOATS(0.0f);
+    ray.base_mm = ray.t_min = FLOATS(0.0f);
+    ray.t_max = FLOATS(INFINITY);
     Interval interval = volume_interval(volume, ray);
     Mask meets = there & (interval.enter <= interval.exit);
+    VisibleRays visible = {{i, i, i, there, false}, ray, interval, meets};
     Ints cells_read = INTS(0);
     Ints nodes_tested = INTS(0);
-    Crossing found = first_crossing(voxels, node_class, levels, cells, volume, ray, interval, cast, meets, &cells_read, &nodes_tested);
+    Crossing found = first_crossing(voxels, skip_by_class(node_class, levels, cells), volume, &visible, cast, &cells_read, &nodes_tested);
     Ints missed = only_touches(interval) ? INTS(CERTIFICATE_UNDECIDED) : INTS(CERTIFICATE_MISS);
     Ints proven = meets ? found.certificate : missed;
     Floats t = interval.enter + found.t;

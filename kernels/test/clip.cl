@@ -2,7 +2,7 @@
 // of all of its own clip planes, those from `sizes[i].w` on, `counts[i]` of them: `entry` holds
 // the axis or plane that it enters by and whether it enters by one at all.
 #define LANES 1
-#include "lib/clip.clh"
+#include "lib/ray/clip.clh"
 
 kernel void clip(uint count, const global uint4 *sizes, const global float4 *planes, const global uint *counts,
                  const global float4 *origins, const global float4 *dirs,
@@ -22,8 +22,11 @@ kernel void clip(uint count, const global uint4 *sizes, const global float4 *pla
     ray.dir.x = pair_of(dirs[i].x, 0.0f);
     ray.dir.y = pair_of(dirs[i].y, 0.0f);
     ray.dir.z = pair_of(dirs[i].z, 0.0f);
+    ray.t_min = 0.0f;
+    ray.t_max = INFINITY;
     Interval found = volume_interval(volume, ray);
-    clip_interval(&found, planes + sizes[i].w, counts[i], ray);
+    ClipPlanes clip = {planes + sizes[i].w, counts[i]};
+    clip_interval(&found, clip, ray);
     inside[i] = (float2)(found.enter, found.exit);
     entry[i] = (uint4)((uint)found.axis, found.by_face ? 1u : 0u, 0u, 0u);
 }

@@ -1,6 +1,6 @@
 // Both directions of the sRGB curve at each value.
 #define LANES 1
-#include "lib/color.clh"
+#include "lib/light/color.clh"
 
 kernel void color(uint count, const global float *values, global float *linear, global float *srgb)
 {

@@ -1,6 +1,6 @@
 // The field at each point of a volume of `size` voxels, and its slope along each direction.
 #define LANES 1
-#include "lib/field.clh"
+#include "lib/volume/field.clh"
 
 kernel void field(uint count, uint4 size, VOXELS voxels, const global float4 *points,
                   const global float4 *dirs, global float *values, global float2 *with_slope)

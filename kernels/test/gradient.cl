@@ -1,7 +1,7 @@
 // The field's gradient at each point of a volume of `size` voxels, and the normal made of it by the
 // map of covectors with these rows, which is `fallback` where the gradient vanishes.
 #define LANES 1
-#include "lib/gradient.clh"
+#include "lib/volume/gradient.clh"
 
 kernel void gradient(uint count, uint4 size, float4 row_x, float4 row_y, float4 row_z,
 #if GRADIENT == GRADIENT_PRECOMPUTED

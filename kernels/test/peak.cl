@@ -1,6 +1,6 @@
 // The peak between two samples of each ray: rays hold the ends' t, the sign and the goal.
 #define LANES 1
-#include "lib/peak.clh"
+#include "lib/find/peak.clh"
 
 kernel void peak(uint count, uint4 size, VOXELS voxels, float4 start, float4 dir, float length_mm, uint first,
                  const global float4 *rays, global float4 *peaks, global uint *found)
@@ -13,6 +13,7 @@ kernel void peak(uint count, uint4 size, VOXELS voxels, float4 start, float4 dir
     volume.ny = size.y;
     volume.nz = size.z;
     Lattice lattice;
+    lattice.volume = volume;
     lattice.start.x = start.x;
     lattice.start.y = start.y;
     lattice.start.z = start.z;
@@ -21,10 +22,12 @@ kernel void peak(uint count, uint4 size, VOXELS voxels, float4 start, float4 dir
     lattice.dir.z = dir.z;
     lattice.length_mm = length_mm;
     float sign = rays[i].z;
-    RayPoint a = ray_point(voxels, volume, &lattice, sign, 0.0f, true, rays[i].x);
-    RayPoint b = ray_point(voxels, volume, &lattice, sign, 0.0f, true, rays[i].y);
+    RayPoint a = ray_point(voxels, &lattice, sign, 0.0f, true, rays[i].x);
+    RayPoint b = ray_point(voxels, &lattice, sign, 0.0f, true, rays[i].y);
     RayPoint best = {0.0f, 0.0f, 0.0f};
     Ints samples = INTS(0);
-    found[i] = peak_between(voxels, volume, &lattice, sign, 0.0f, rays[i].w, first != 0u, a, b, ALL_LANES, &best, &samples) ? 1u : 0u;
+    Goal goal = {sign, 0.0f, rays[i].w, first != 0u};
+    Segment segment = {a, b};
+    found[i] = peak_between(voxels, &lattice, goal, segment, ALL_LANES, &best, &samples) ? 1u : 0u;
     peaks[i] = (float4)(best.t, best.height, best.slope, (float)samples);
 }

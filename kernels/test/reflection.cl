@@ -1,6 +1,6 @@
 // The light that each surface point reflects toward the eye; `toward_light.w` = 1: a headlight.
 #define LANES 1
-#include "lib/shade.clh"
+#include "lib/light/shade.clh"
 
 kernel void reflection(uint count, uint model, float4 numbers, const global float4 *colors, const global float4 *normals,
                        const global float4 *toward_eye, const global float4 *toward_light, global float4 *seen)

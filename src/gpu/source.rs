@@ -17,34 +17,41 @@ macro_rules! embedded {
 /// Every kernel file, its path below `kernels/`.
 const FILES: &[(&str, &str)] = embedded![
     "lib/abi.clh",
-    "lib/beam.clh",
-    "lib/cells.clh",
-    "lib/clip.clh",
-    "lib/color.clh",
-    "lib/crossing.clh",
-    "lib/cubic.clh",
-    "lib/exponential.clh",
-    "lib/field.clh",
-    "lib/gather.clh",
-    "lib/gradient.clh",
-    "lib/lanes.clh",
-    "lib/lattice.clh",
-    "lib/means.clh",
-    "lib/medium.clh",
-    "lib/octree.clh",
-    "lib/pair.clh",
-    "lib/peak.clh",
-    "lib/plane.clh",
-    "lib/power.clh",
-    "lib/preintegrated.clh",
-    "lib/quadrature.clh",
-    "lib/ray.clh",
-    "lib/refine.clh",
-    "lib/shade.clh",
-    "lib/spans.clh",
-    "lib/stretches.clh",
-    "lib/transfer.clh",
-    "lib/voxels.clh",
+    "lib/find/crossing.clh",
+    "lib/find/peak.clh",
+    "lib/find/refine.clh",
+    "lib/light/accumulate.clh",
+    "lib/light/color.clh",
+    "lib/light/emission.clh",
+    "lib/light/medium.clh",
+    "lib/light/preintegrated.clh",
+    "lib/light/quadrature.clh",
+    "lib/light/shade.clh",
+    "lib/light/transfer.clh",
+    "lib/math/exponential.clh",
+    "lib/math/lanes.clh",
+    "lib/math/pair.clh",
+    "lib/math/power.clh",
+    "lib/ray/camera.clh",
+    "lib/ray/cast_planes.clh",
+    "lib/ray/clip.clh",
+    "lib/ray/interval.clh",
+    "lib/ray/lattice.clh",
+    "lib/ray/pixels.clh",
+    "lib/ray/planes.clh",
+    "lib/ray/ray.clh",
+    "lib/ray/source.clh",
+    "lib/ray/visible.clh",
+    "lib/skip/cells.clh",
+    "lib/skip/march.clh",
+    "lib/skip/nodes.clh",
+    "lib/skip/packet.clh",
+    "lib/skip/segments.clh",
+    "lib/skip/spans.clh",
+    "lib/volume/cubic.clh",
+    "lib/volume/field.clh",
+    "lib/volume/gradient.clh",
+    "lib/volume/voxels.clh",
     "pass/adaptive_emission.cl",
     "pass/cast_emission.cl",
     "pass/cast_maximum.cl",
@@ -131,16 +138,20 @@ mod tests {
 
     #[test]
     fn every_kernel_file_is_embedded() {
-        let mut on_disk = Vec::new();
-        for folder in ["lib", "pass", "test"] {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("kernels")
-                .join(folder);
-            for entry in std::fs::read_dir(path).unwrap() {
-                let name = entry.unwrap().file_name().into_string().unwrap();
-                on_disk.push(format!("{folder}/{name}"));
+        fn collect(kernels: &Path, folder: &Path, found: &mut Vec<String>) {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    collect(kernels, &path, found);
+                } else {
+                    let name = path.strip_prefix(kernels).unwrap().to_str().unwrap();
+                    found.push(name.to_owned());
+                }
             }
         }
+        let kernels = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
+        let mut on_disk = Vec::new();
+        collect(&kernels, &kernels, &mut on_disk);
         on_disk.sort();
         assert_eq!(on_disk, files().collect::<Vec<_>>());
     }
@@ -150,12 +161,12 @@ mod tests {
         let text = flatten("pass/exact_surface.cl").unwrap();
         assert!(!text.contains("#include"));
         assert_eq!(text.matches("} RayGrid;").count(), 1);
-        assert!(text.contains("#line 1 \"kernels/lib/ray.clh\""));
+        assert!(text.contains("#line 1 \"kernels/lib/ray/ray.clh\""));
         // The line after the last include is marked with its own number.
         let source = read("pass/exact_surface.cl").unwrap();
         let after = source
             .lines()
-            .position(|l| l == "#include \"lib/crossing.clh\"")
+            .position(|l| l == "#include \"lib/ray/cast_planes.clh\"")
             .unwrap()
             + 2;
         assert!(text.contains(&format!("#line {after} \"kernels/pass/exact_surface.cl\"")));

@@ -41,7 +41,7 @@ impl Lanes {
     }
 
     /// The pixels along x and y whose rays they are: as `TILE_WIDTH` and `TILE_HEIGHT` of
-    /// `kernels/lib/lanes.clh`.
+    /// `kernels/lib/math/lanes.clh`.
     pub fn tile(self) -> [usize; 2] {
         match self.0 {
             1 => [1, 1],

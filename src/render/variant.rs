@@ -171,7 +171,11 @@ const ADAPTIVE_HALVINGS: u32 = 10;
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
 const CONSTANTS: &[(&str, u32)] = &[
-    ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
+    ("RAYS_CAMERA", 0),
+    ("RAYS_PIXELS", 1),
+    ("RAYS_BUFFERS", 2),
+    ("RAYS", 0),
+    ("MAX_SAMPLES", MOST_SAMPLES),
     ("BRICK", cells::BRICK as u32),
     ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
@@ -195,7 +199,7 @@ const CONSTANTS: &[(&str, u32)] = &[
     ("TRAVERSE_REVELLES", traverse_constant(Traverse::Revelles)),
     ("TRAVERSE_DISTANCE", traverse_constant(Traverse::Distance)),
     ("CLASS_BITS", CLASS_BITS),
-    ("REACH_MOST", REACH_MOST),
+    ("MAX_DISTANCE", REACH_MOST),
     ("CERTIFICATE_MISS", Certificate::Miss as u32),
     ("CERTIFICATE_HIT", Certificate::Hit as u32),
     ("CERTIFICATE_UNDECIDED", Certificate::Undecided as u32),

@@ -1,4 +1,4 @@
-//! A volume's voxels on the device, in a buffer or an image: the twin of `kernels/lib/voxels.clh`.
+//! A volume's voxels on the device, in a buffer or an image: the twin of `kernels/lib/volume/voxels.clh`.
 
 use std::borrow::Cow;
 

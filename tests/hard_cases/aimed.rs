@@ -188,11 +188,11 @@ fn a_cast_that_begins_by_single_precision_is_caught() {
         return;
     }
     let by_high = (
-        "lib/pair.clh",
+        "lib/math/pair.clh",
         "place.high & place.low < 0.0f ?",
         "place.high & NO_LANE ?",
     );
-    let no_pairs = ("lib/ray.clh", "if (!ANY(unsure))", "if (true)");
+    let no_pairs = ("lib/ray/interval.clh", "if (!ANY(unsure))", "if (true)");
     for (test, (file, right, wrong)) in [
         ("aimed::rays_a_hair_beside_a_corner_are_told_apart", by_high),
         (
@@ -222,19 +222,19 @@ fn a_cast_that_loses_rays_is_caught() {
     for (file, right, wrong) in [
         // The turning points of the cubic forgotten.
         (
-            "lib/cubic.clh",
+            "lib/volume/cubic.clh",
             "Mask turns = discriminant > 0.0f;",
             "Mask turns = NO_LANE & discriminant > 0.0f;",
         ),
         // A crossing in the gap between two cells' cubics lost.
         (
-            "lib/crossing.clh",
+            "lib/find/crossing.clh",
             "which & search->begun & (inside ^ search->inside)",
             "NO_LANE & (inside ^ search->inside)",
         ),
         // A certificate that ignores rounding.
         (
-            "lib/crossing.clh",
+            "lib/find/crossing.clh",
             "return spread * 4e-6f + iso_error;",
             "return FLOATS(1e-30f);",
         ),

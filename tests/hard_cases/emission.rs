@@ -82,15 +82,18 @@ fn constant_medium(seen: &Seen) -> Vec<String> {
 }
 
 /// Opacities taken for those of another length.
-const OTHER_LENGTH: Mutant = kernel("lib/transfer.clh", &[("/ cast.unit_length_mm", "/ 2.5f")]);
+const OTHER_LENGTH: Mutant = kernel(
+    "lib/light/transfer.clh",
+    &[("/ cast.unit_length_mm", "/ 2.5f")],
+);
 
 #[test]
 fn homogeneous() {
     // The last panel of a ray, which is shorter, taken for a whole one.
     let whole_panels = kernel(
-        "lib/lattice.clh",
+        "lib/ray/lattice.clh",
         &[(
-            "return least_of(lattice->length_mm, AS_FLOATS(k) * lattice->step_mm);",
+            "return min_of(lattice->length_mm, AS_FLOATS(k) * lattice->step_mm);",
             "return AS_FLOATS(k) * lattice->step_mm;",
         )],
     );
@@ -109,10 +112,10 @@ fn slab() {
     }
     // The nearer point's opacity between two points.
     let not_between = kernel(
-        "lib/transfer.clh",
+        "lib/light/transfer.clh",
         &[(
-            "    Seen seen;\n",
-            "    f = f < 0.5f ? FLOATS(0.0f) : FLOATS(1.0f);\n    Seen seen;\n",
+            "    ColorOpacity seen;\n",
+            "    f = f < 0.5f ? FLOATS(0.0f) : FLOATS(1.0f);\n    ColorOpacity seen;\n",
         )],
     );
     judge("emission::slab", "slab", truth, &[not_between]);
@@ -124,7 +127,10 @@ fn ramp() {
         along_x(seen, 64.0 * rising(0.95) / 40.0)
     }
     // Opacity for absorption: right for the faintest alone.
-    let faint_alone = kernel("lib/transfer.clh", &[("depth_of_opacity(clear)", "clear")]);
+    let faint_alone = kernel(
+        "lib/light/transfer.clh",
+        &[("depth_of_opacity(clear)", "clear")],
+    );
     judge("emission::ramp", "ramp", truth, &[faint_alone]);
 }
 
@@ -132,8 +138,8 @@ fn ramp() {
 fn gaussian() {
     // What lies behind is not hidden.
     let not_hidden = kernel(
-        "lib/gather.clh",
-        &[("weighted(light, gathered->transmission)", "light")],
+        "lib/light/accumulate.clh",
+        &[("weighted(light, accumulated->transmittance)", "light")],
     );
     judge(
         "emission::gaussian",
@@ -151,7 +157,7 @@ fn tf_spike() {
     // Whole intervals between the values of two samples left out; panels judged by their points
     // alone, whatever lies between.
     let left_out = kernel(
-        "lib/preintegrated.clh",
+        "lib/light/preintegrated.clh",
         &[(
             "mean_sum(mean_sum(below, whole), above)",
             "mean_sum(below, above)",
@@ -227,7 +233,7 @@ fn opaque_step() {
     }
     // Infinite absorption.
     let infinite = kernel(
-        "lib/transfer.clh",
+        "lib/light/transfer.clh",
         &[(
             "return opacity > 0.0f ? absorption",
             "return opacity == 1.0f ? FLOATS(INFINITY) : opacity > 0.0f ? absorption",
@@ -249,7 +255,7 @@ fn faint_4096() {
     }
     // Opacities without log1p.
     let lost_digits = kernel(
-        "lib/transfer.clh",
+        "lib/light/transfer.clh",
         &[(
             "depth_of_opacity(clear)",
             "depth_of_opacity(1.0f - (1.0f - clear))",

@@ -31,7 +31,7 @@ pub const CASES: &[&str] = &[
 
 /// The turning points of the cubic forgotten: only the ends of a cell are looked at.
 const NO_TURNS: Mutant = kernel(
-    "lib/cubic.clh",
+    "lib/volume/cubic.clh",
     &[(
         "Mask turns = discriminant > 0.0f;",
         "Mask turns = NO_LANE & discriminant > 0.0f;",
@@ -40,7 +40,7 @@ const NO_TURNS: Mutant = kernel(
 
 /// A corner of the cell forgotten in the test whether it matters.
 const SEVEN_CORNERS: Mutant = kernel(
-    "lib/cubic.clh",
+    "lib/volume/cubic.clh",
     &[(
         "for (uint i = 1u; i < 8u; i++)\n        most",
         "for (uint i = 1u; i < 7u; i++)\n        most",
@@ -49,7 +49,7 @@ const SEVEN_CORNERS: Mutant = kernel(
 
 /// Weights of eight bits, as texture units have them.
 const TEXTURE_WEIGHTS: Mutant = kernel(
-    "lib/field.clh",
+    "lib/volume/field.clh",
     &[(
         "Floats difference = b - a;",
         "Floats difference = b - a;\n    t = rint(t * 256.0f) / 256.0f;",
@@ -58,20 +58,20 @@ const TEXTURE_WEIGHTS: Mutant = kernel(
 
 /// The field's highest term along the ray forgotten.
 const NO_CUBE: Mutant = kernel(
-    "lib/cubic.clh",
+    "lib/volume/cubic.clh",
     &[("cubic.c3 = f2 * d.z;", "cubic.c3 = 0.0f;")],
 );
 
 /// The root not looked for: the middle of its bracket.
 const NO_ROOT: Mutant = kernel(
-    "lib/cubic.clh",
+    "lib/volume/cubic.clh",
     &[
         (
             "#define CUBIC_MOST_ITERATIONS 32u",
             "#define CUBIC_MOST_ITERATIONS 0u",
         ),
         (
-            "within(from + (to - from) * (f_from / (f_from - f_to)), from, to)",
+            "clamp_to(from + (to - from) * (f_from / (f_from - f_to)), from, to)",
             "0.5f * (from + to)",
         ),
     ],
@@ -79,7 +79,7 @@ const NO_ROOT: Mutant = kernel(
 
 /// A beam taken for the ray on its lower side.
 const LOWEST_RAY: Mutant = kernel(
-    "lib/beam.clh",
+    "lib/skip/packet.clh",
     &[(
         "{cells.x, cells.y, cells.z, cells.w}",
         "{cells.x, cells.x, cells.z, cells.z}",
@@ -126,7 +126,7 @@ fn three_roots() {
     }
     // Any of the roots, not the first.
     let last_root = kernel(
-        "lib/crossing.clh",
+        "lib/find/crossing.clh",
         &[(
             "Mask in_first = starts_in ^ a_in;",
             "Mask in_first = (starts_in ^ a_in) & !(a_in ^ b_in);",
@@ -164,12 +164,15 @@ fn two_roots_in_a_step() {
 
 /// "Above" for "at or above", at the ends of a cell's pieces and of slices beyond them.
 const ABOVE_ONLY: Mutant = kernel(
-    "lib/crossing.clh",
+    "lib/find/crossing.clh",
     &[
         ("Mask a_in = f_a >= 0.0f;", "Mask a_in = f_a > 0.0f;"),
         ("Mask b_in = f_b >= 0.0f;", "Mask b_in = f_b > 0.0f;"),
         ("b_in ^ (f_end >= 0.0f)", "b_in ^ (f_end > 0.0f)"),
-        ("region.class == CLASS_ABOVE ? 1.0f : -1.0f", "-1.0f"),
+        (
+            "skip.class == CLASS_ABOVE ? FLOATS(1.0f)",
+            "skip.class == CLASS_ABOVE ? FLOATS(-1.0f)",
+        ),
     ],
 );
 
@@ -206,7 +209,7 @@ fn iso_at_extremes() {
             is("at most a point is hit", hits <= 1)
         }
     }
-    let never_above = kernel("lib/crossing.clh", &NEVER_ABOVE);
+    let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
     judge(
         "isosurface::iso_at_extremes",
         "iso-at-extremes",
@@ -395,7 +398,7 @@ fn zero_gradient() {
         lines
     }
     let no_normal = kernel(
-        "lib/gradient.clh",
+        "lib/volume/gradient.clh",
         &[(
             "Mask vanishes = ",
             "fallback.x = fallback.y = fallback.z = FLOATS(0.0f);\n    Mask vanishes = ",
@@ -426,7 +429,7 @@ fn mirrored_normals() {
         lines
     }
     let index_space = kernel(
-        "lib/gradient.clh",
+        "lib/volume/gradient.clh",
         &[("volume.gradient_row_x.x * covector.x", "covector.x")],
     );
     judge(

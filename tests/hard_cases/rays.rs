@@ -30,8 +30,8 @@ fn something(seen: &Seen) -> Vec<String> {
 fn axis_rays() {
     // No guard on directions without a component.
     let no_guard = kernel(
-        "lib/ray.clh",
-        &[("#define LEAST_DIR 1e-20f", "#define LEAST_DIR 0.0f")],
+        "lib/ray/ray.clh",
+        &[("#define MIN_DIR 1e-20f", "#define MIN_DIR 0.0f")],
     );
     judge("rays::axis_rays", "axis-rays", something, &[no_guard]);
 }
@@ -40,7 +40,7 @@ fn axis_rays() {
 fn grid_rays() {
     // The last cell along an axis forgotten.
     let last_cell = kernel(
-        "lib/cells.clh",
+        "lib/skip/cells.clh",
         &[(
             "a.count = axis_cells(voxels);",
             "a.count = axis_cells(voxels) - 1;",
@@ -53,7 +53,7 @@ fn grid_rays() {
 fn face_rays() {
     // A face of the volume does not belong to it.
     let open = kernel(
-        "lib/ray.clh",
+        "lib/ray/interval.clh",
         &[(
             "above_low > 0.0f | above_high < 0.0f",
             "above_low >= 0.0f | above_high <= 0.0f",
@@ -71,9 +71,9 @@ fn face_rays() {
 fn eye_on_grid() {
     // What lies behind the eye is seen.
     let behind = kernel(
-        "lib/ray.clh",
+        "lib/ray/interval.clh",
         &[(
-            "interval.enter = FLOATS(0.0f);",
+            "interval.enter = ray.t_min;",
             "interval.enter = FLOATS(-INFINITY);",
         )],
     );
@@ -89,7 +89,7 @@ fn eye_on_grid() {
 fn far_camera() {
     // Rays begin at the eye, in single precision.
     let from_the_eye = kernel(
-        "lib/ray.clh",
+        "lib/ray/camera.clh",
         &[(
             "ray.base_mm = grid.base_mm * len;",
             "ray.base_mm = grid.base_mm * len;
@@ -104,7 +104,7 @@ fn far_camera() {
 #[test]
 fn lenses() {
     // Lengths along rays at the picture's edge are measured along the middle one.
-    let not_unit = kernel("lib/ray.clh", &[("1.0f / len", "FLOATS(1.0f)")]);
+    let not_unit = kernel("lib/ray/camera.clh", &[("1.0f / len", "FLOATS(1.0f)")]);
     judge("rays::lenses", "lenses", something, &[not_unit]);
 }
 
@@ -168,9 +168,9 @@ fn far_origin() {
 fn tiny_spacing() {
     // A length that is small in mm, not in voxels.
     let a_micron = kernel(
-        "lib/ray.clh",
+        "lib/ray/interval.clh",
         &[(
-            "interval.enter = FLOATS(0.0f);",
+            "interval.enter = ray.t_min;",
             "interval.enter = FLOATS(1e-3f);",
         )],
     );
@@ -181,8 +181,8 @@ fn tiny_spacing() {
 fn huge_spacing() {
     // A direction that is small in voxels a mm, not in a whole volume.
     let small = kernel(
-        "lib/ray.clh",
-        &[("#define LEAST_DIR 1e-20f", "#define LEAST_DIR 1e-5f")],
+        "lib/ray/ray.clh",
+        &[("#define MIN_DIR 1e-20f", "#define MIN_DIR 1e-5f")],
     );
     judge("rays::huge_spacing", "huge-spacing", same_bump, &[small]);
 }

@@ -42,7 +42,7 @@ fn with_voxels(volume: &Volume, voxels: Vec<f32>) -> Volume {
 fn sizes() {
     // An axis with one voxel has no extent.
     let flat = kernel(
-        "lib/ray.clh",
+        "lib/ray/ray.clh",
         &[
             ("return n == 1u ? -0.5f : 0.0f;", "return 0.0f;"),
             (
@@ -66,7 +66,7 @@ fn constant() {
             _ => is("nothing is hit", seen.hits() == 0),
         }
     }
-    let never_above = kernel("lib/crossing.clh", &NEVER_ABOVE);
+    let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
     judge("volumes::constant", "constant", truth, &[never_above]);
 }
 
@@ -74,7 +74,7 @@ fn constant() {
 fn types() {
     // Voxels cut to eight bits: a byte's type for all.
     let eight_bits = kernel(
-        "lib/voxels.clh",
+        "lib/volume/voxels.clh",
         &[
             (
                 "AS_FLOATS(GATHER(Ints, voxels, i))",
@@ -246,7 +246,7 @@ const INDEX: &str = "(AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_IN
 #[test]
 fn wide_index() {
     let sixteen_bits = kernel(
-        "lib/voxels.clh",
+        "lib/volume/voxels.clh",
         &[(
             INDEX,
             "((AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x)) & 0xffffu",
@@ -274,7 +274,7 @@ typedef ulong16 Index;
 #endif",
     )];
     let caught = std::panic::catch_unwind(|| {
-        assert_caught("volumes::wide_index", "lib/voxels.clh", &sixty_four);
+        assert_caught("volumes::wide_index", "lib/volume/voxels.clh", &sixty_four);
     });
     assert!(caught.is_err(), "64 bits change the picture");
 }
@@ -314,12 +314,12 @@ fn clip_planes() {
     }
     // Planes along the rays without effect; only the first plane of all.
     let along = kernel(
-        "lib/clip.clh",
+        "lib/ray/clip.clh",
         &[("& height < 0.0f", "& height < -INFINITY")],
     );
     let first = kernel(
-        "lib/clip.clh",
-        &[("i < count &&", "i < 1u && i < count &&")],
+        "lib/ray/clip.clh",
+        &[("i < clip.count &&", "i < 1u && i < clip.count &&")],
     );
     judge(
         "volumes::clip_planes",

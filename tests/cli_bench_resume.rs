@@ -161,11 +161,7 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
     place.done("phantom gaussian -o bump.nrrd --size 24");
     // Other kernels, from a folder: the embedded ones, one of them changed.
     let kernels = place.path("kernels");
-    for file in angioray::gpu::files() {
-        let copy = kernels.join(file);
-        std::fs::create_dir_all(copy.parent().unwrap()).unwrap();
-        std::fs::copy(Path::new("kernels").join(file), copy).unwrap();
-    }
+    common::copy_kernels(&kernels);
     let told_with_kernels = || {
         let mut command = place.command(&format!("{line} --protocol static"));
         let output = command.env("ANGIORAY_KERNELS", &kernels).output().unwrap();

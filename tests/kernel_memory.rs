@@ -125,15 +125,8 @@ impl Under {
 
     /// A copy of the kernels with one line changed.
     fn with_broken(mut self, file: &str, line: &str, broken: &str) -> Self {
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
         let copy = self.path("kernels");
-        for folder in ["lib", "pass", "test"] {
-            std::fs::create_dir_all(copy.join(folder)).unwrap();
-            for entry in std::fs::read_dir(source.join(folder)).unwrap() {
-                let entry = entry.unwrap();
-                std::fs::copy(entry.path(), copy.join(folder).join(entry.file_name())).unwrap();
-            }
-        }
+        common::copy_kernels(&copy);
         let text = std::fs::read_to_string(copy.join(file)).unwrap();
         assert_eq!(text.matches(line).count(), 1, "{line}");
         std::fs::write(copy.join(file), text.replace(line, broken)).unwrap();

@@ -165,7 +165,7 @@ static inline void add_homogeneous(VOXELS voxels, const PanelContext *context, A
 #define NODE_AVERAGE
 #endif
 
-// Adds panels along rays until each has come to its end.
+// Adds panels along rays until each has ended.
 static inline void emit_along(VOXELS voxels, const PanelContext *context, Accumulated *accumulated, SegmentMarch *march, Ints *samples)
 {
     float min_transmittance = context->emitter.cast.least_transmission;

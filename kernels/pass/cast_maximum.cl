@@ -44,7 +44,7 @@ static inline Floats mean_along(VOXELS voxels, const Lattice *lattice, Mask aliv
 }
 #else
 
-// What is known of rays on their way.
+// What a projection knows of its rays so far.
 typedef struct {
     ProjectionCast cast;
     RayPoint before; // sample k - 1, where it is known: heights are sign * Phi

@@ -1,8 +1,8 @@
 // The first point of each ray where Phi - iso changes sign.
 //
 // Fixed steps on the sample lattice (Levoy 1988), nodes that lie wholly on one side of the iso value
-// skipped (Lesar et al. 2015, §III-C), the crossing refined between two samples. With `probe`, between two
-// samples on one side between which the field may turn a peak on the other side is looked for. "Inside"
+// skipped (Lesar et al. 2015, §III-C), the crossing refined between two samples. With `probe`, a peak on the other
+// side is searched for between two samples on one side where the field may turn between them. "Inside"
 // is Phi >= iso. With caps, a ray that enters through a face of the volume or a clip plane where it is
 // inside hits there.
 //
@@ -14,7 +14,7 @@
 #include "lib/ray/cast_planes.clh"
 #include "lib/skip/march.clh"
 
-// What is known of rays on their way.
+// What a surface cast knows of its rays so far.
 typedef struct {
     SurfaceCast cast;
     Mask capped;     // rays that hit where they begin, if that is inside

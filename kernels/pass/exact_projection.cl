@@ -66,7 +66,7 @@ static inline Floats mean_along(VOXELS voxels, VolumeGrid volume, const VisibleR
 }
 #else
 
-// What is known of rays on their way.
+// What a projection knows of its rays so far.
 typedef struct {
     ProjectionCast cast;
     Floats max;      // of sign * Phi
@@ -103,7 +103,7 @@ static inline Threshold projection_threshold(const ProjectionState *state)
     threshold.sign = state->cast.sign;
 #if PROJECTION == PROJECTION_LOCAL
     // A climb that has reached the threshold ends where all that follows is lower. Else a local maximum
-    // that counts, or a higher maximum, is looked for.
+    // that counts, or a higher maximum, is wanted.
     float counts_from = state->cast.threshold;
     Mask reached = state->rising & state->turn >= counts_from;
     threshold.ties = reached | state->max >= counts_from;
@@ -248,7 +248,7 @@ static inline ProjectionState project(VOXELS voxels, SkipGrid grid, VolumeGrid v
     CellMarch march = cell_march(volume, grid, rays, cast.traverse);
     ProjectionState state = projection_start(cast);
 #if PROJECTION == PROJECTION_EXTREMUM
-    // Where the greatest values are to be expected, first: all else must exceed what rays reach there.
+    // First where the greatest values are to be expected: all else must exceed what rays reach there.
     ProjectionState ahead = state;
     CellMarch there = cells_ahead(&march, cast.sign);
     if (march.packed) {

@@ -1,7 +1,7 @@
 //! What the tests that need an OpenCL device share.
 #![allow(dead_code)] // each test program uses its own part
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
@@ -274,4 +274,14 @@ pub fn assert_sound(what: &str, frame: &Frame) {
         alphas.all(|a| (0.0..=1.0).contains(&a)),
         "{what}: an opacity is not in 0..1"
     );
+}
+
+/// Copies the kernels' sources below a folder, so that `ANGIORAY_KERNELS` may name it.
+pub fn copy_kernels(folder: &Path) {
+    let kernels = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
+    for file in angioray::gpu::files() {
+        let copy = folder.join(file);
+        std::fs::create_dir_all(copy.parent().unwrap()).unwrap();
+        std::fs::copy(kernels.join(file), copy).unwrap();
+    }
 }

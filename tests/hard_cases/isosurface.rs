@@ -67,8 +67,8 @@ const NO_ROOT: Mutant = kernel(
     "lib/volume/cubic.clh",
     &[
         (
-            "#define CUBIC_MOST_ITERATIONS 32u",
-            "#define CUBIC_MOST_ITERATIONS 0u",
+            "#define CUBIC_MAX_ITERATIONS 32u",
+            "#define CUBIC_MAX_ITERATIONS 0u",
         ),
         (
             "clamp_to(from + (to - from) * (f_from / (f_from - f_to)), from, to)",

@@ -67,14 +67,7 @@ pub fn assert_caught(name: &str, file: &str, changes: &[(&str, &str)]) {
 
 /// A copy of the kernels with one file changed.
 fn copy_with(folder: &Path, file: &str, changes: &[(&str, &str)]) {
-    let kernels = Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels");
-    for part in ["lib", "pass", "test"] {
-        std::fs::create_dir(folder.join(part)).unwrap();
-        for entry in std::fs::read_dir(kernels.join(part)).unwrap() {
-            let entry = entry.unwrap();
-            std::fs::copy(entry.path(), folder.join(part).join(entry.file_name())).unwrap();
-        }
-    }
+    crate::common::copy_kernels(folder);
     let mut text = std::fs::read_to_string(folder.join(file)).unwrap();
     for (right, wrong) in changes {
         assert_eq!(text.matches(right).count(), 1, "{file}: {right}");
@@ -84,10 +77,9 @@ fn copy_with(folder: &Path, file: &str, changes: &[(&str, &str)]) {
 }
 
 /// Nodes that lie above the iso value taken for ones below it.
-pub const NEVER_ABOVE: [(&str, &str); 2] = [
-    ("region.class == CLASS_ABOVE ? 1.0f : -1.0f", "-1.0f"),
+pub const NEVER_ABOVE: [(&str, &str); 1] = [
     (
-        "class_of(byte) == CLASS_ABOVE ? FLOATS(1.0f) : FLOATS(-1.0f)",
+        "skip.class == CLASS_ABOVE ? FLOATS(1.0f) : FLOATS(-1.0f)",
         "FLOATS(-1.0f)",
     ),
 ];

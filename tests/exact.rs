@@ -6,19 +6,16 @@
 
 mod common;
 
-use angioray::bench::{self, Met, Verdict};
 use angioray::extent::Dims;
 use angioray::frame::error::{depth_error, value_error};
-use angioray::frame::{Certificate, Frame, Kind, Wanted};
+use angioray::frame::{Certificate, Frame, Wanted};
+use angioray::lab::measure::{Borderline, Closeness, excuse_dips};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{
-    Filter, Picture, Projection, Ray, Refine, Rgb, SamplingMethod, Scene, Window,
-};
+use angioray::scene::{Filter, Picture, Projection, Refine, Rgb, SamplingMethod, Scene, Window};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use common::{hash, volume_of};
-use glam::DQuat;
 
 const SIZE_PX: u32 = 192;
 
@@ -33,14 +30,15 @@ const UNDECIDED: f64 = 1e-4;
 /// than a millionth of its cell's spread in slope, which single precision cannot tell from none.
 const SHALLOW_DIPS: usize = 2;
 
-struct Judge<'a> {
+/// A volume under test.
+struct Subject<'a> {
     name: &'a str,
     volume: &'a Volume,
     renderer: Renderer<'a>,
     filter: Filter,
 }
 
-/// What a surface's picture has wrong.
+/// The errors of a surface's picture.
 #[derive(Debug)]
 struct Wrong {
     missed: u64,
@@ -52,7 +50,7 @@ struct Wrong {
     disproven: usize,
 }
 
-impl Judge<'_> {
+impl Subject<'_> {
     fn scene(&self, picture: Picture, method: SamplingMethod) -> Scene {
         let mut scene = common::scene(self.volume, SIZE_PX, picture);
         scene.camera = common::camera(self.volume, -common::OBLIQUE);
@@ -62,10 +60,10 @@ impl Judge<'_> {
     }
 
     fn both(&mut self, scene: &Scene) -> (Frame, Frame) {
-        let truth = reference::render(self.volume, scene, Wanted::ALL, &Silent).unwrap();
+        let reference = reference::render(self.volume, scene, Wanted::ALL, &Silent).unwrap();
         let frame = self.renderer.render(scene, Wanted::ALL).unwrap().frame;
         common::assert_sound(self.name, &frame);
-        (truth, frame)
+        (reference, frame)
     }
 
     /// The scene of a surface, the reference's picture of it and the device's.
@@ -78,18 +76,20 @@ impl Judge<'_> {
             phong: None,
         };
         let scene = self.scene(picture, method);
-        let (truth, frame) = self.both(&scene);
-        (scene, truth, frame)
+        let (reference, frame) = self.both(&scene);
+        (scene, reference, frame)
     }
 
     fn wrong(&mut self, iso: f64, caps: bool) -> Wrong {
-        let (scene, truth, mut frame) = self.surface(iso, caps, SamplingMethod::Exact);
-        let disproven = disproven(&truth, &frame);
+        let (scene, reference, mut frame) = self.surface(iso, caps, SamplingMethod::Exact);
+        let disproven = disproven(&reference, &frame);
         let undecided = frame.undecided().unwrap() as f64 / frame.size.pixels() as f64;
-        self.excuse_borderline(&scene, &truth, &mut frame);
+        Borderline::new(self.volume, &scene, Closeness::Exact)
+            .unwrap()
+            .excuse(&reference, &mut frame);
         let voxel_mm = self.volume.geometry().smallest_spacing_mm();
-        let error = depth_error(&truth, &frame, voxel_mm).unwrap();
-        let depths = truth
+        let error = depth_error(&reference, &frame, voxel_mm).unwrap();
+        let depths = reference
             .depth
             .iter()
             .flatten()
@@ -110,106 +110,50 @@ impl Judge<'_> {
         }
     }
 
-    /// Gives hits that differ and are [`Verdict::Borderline`] the reference's depth.
-    fn excuse_borderline(&self, scene: &Scene, truth: &Frame, frame: &mut Frame) {
-        let judge = bench::Judge::new(self.volume, scene).unwrap();
-        let close_mm = 1e-4 * self.volume.geometry().smallest_spacing_mm();
-        let kinds = frame.kind.as_ref().unwrap();
-        let depths = frame.depth.as_mut().unwrap();
-        for (pixel, &true_mm) in truth.depth.as_ref().unwrap().iter().enumerate() {
-            let depth_mm = depths[pixel];
-            if true_mm == depth_mm || f64::from((true_mm - depth_mm).abs()) <= close_mm {
-                continue;
-            }
-            let met = Met {
-                kind: [Kind::Nothing, Kind::Surface, Kind::Cap, Kind::Geometry]
-                    [kinds[pixel] as usize],
-                depth_mm: depth_mm.into(),
-            };
-            let ray = ray(scene, pixel);
-            if judge.verdict(ray, judge.truth(ray), met, 0.0) == Verdict::Borderline {
-                depths[pixel] = true_mm;
-            }
-        }
-    }
-
-    /// Gives pixels of local maxima that differ the reference's value where the reference itself
-    /// gives theirs for a ray no farther away than [`bench::Judge::NEAR_VOXELS`]: whether a ray dips
-    /// between two maxima, no finite precision decides.
-    fn excuse_dips(&self, scene: &Scene, truths: &[f32], own: &mut [f32], close: f64) {
-        let near_mm = bench::Judge::NEAR_VOXELS * self.volume.geometry().smallest_spacing_mm();
-        let tracer = reference::Tracer::new(self.volume, scene).unwrap();
-        for (pixel, (own, &truth)) in own.iter_mut().zip(truths).enumerate() {
-            if f64::from((*own - truth).abs()) <= close {
-                continue;
-            }
-            let ray = ray(scene, pixel);
-            let side = ray.dir_world.any_orthonormal_vector();
-            let excused = (0..8).any(|k| {
-                let turn = DQuat::from_axis_angle(ray.dir_world, f64::from(k) * 0.785);
-                let mut beside = ray;
-                beside.origin_world += (turn * side) * near_mm;
-                let moved = tracer.cast(beside).value as f32;
-                // Theirs rather than its own.
-                let theirs = (moved - *own).abs();
-                theirs < 0.25 * (truth - *own).abs() || f64::from(theirs) <= 100.0 * close
-            });
-            if excused {
-                *own = truth;
-            }
-        }
-    }
-
     /// The largest error of a projected value, as a share of the range.
     fn projection(&mut self, of: Projection, method: SamplingMethod) -> f64 {
         let range = self.volume.range();
         let window = Window::new(range.min, range.max).unwrap();
         let scene = self.scene(Picture::Projection { of, window }, method);
-        let (truth, mut frame) = self.both(&scene);
+        let (reference, mut frame) = self.both(&scene);
         let local = matches!(of, Projection::LocalMaximum { .. });
         if local && method == SamplingMethod::Exact {
-            let truths = truth.value.as_ref().unwrap();
+            let references = reference.value.as_ref().unwrap();
             let own = frame.value.as_mut().unwrap();
             let close = VALUE_MAX * range.width();
-            self.excuse_dips(&scene, truths, own, close);
+            excuse_dips(self.volume, &scene, references, own, close).unwrap();
             let wrong = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > close;
-            let pixels = truths
+            let pixels = references
                 .iter()
                 .zip(&*own)
                 .filter(|&(a, b)| wrong((a, b)))
                 .count();
             assert!(pixels <= SHALLOW_DIPS, "{}: {pixels} pixels", self.name);
             if pixels > 0 {
-                frame.value.clone_from(&truth.value);
+                frame.value.clone_from(&reference.value);
             }
         }
-        let error = value_error(&truth, &frame, range.width()).unwrap();
+        let error = value_error(&reference, &frame, range.width()).unwrap();
         assert_eq!((error.missed, error.extra), (0, 0));
         error.max.unwrap()
     }
 }
 
-fn ray(scene: &Scene, pixel: usize) -> Ray {
-    let width = scene.size.width() as usize;
-    let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
-    scene.camera.ray(scene.size, x, y)
-}
-
 /// Pixels whose certificate says what is not so.
-fn disproven(truth: &Frame, frame: &Frame) -> usize {
+fn disproven(reference: &Frame, frame: &Frame) -> usize {
     let certificates = frame.certificate.iter().flatten();
     certificates
-        .zip(truth.certificate.iter().flatten())
+        .zip(reference.certificate.iter().flatten())
         .filter(|&(&own, &true_one)| own != Certificate::Undecided as u32 && own != true_one)
         .count()
 }
 
-/// Judges surfaces (with and without caps) and projections, prints rows, keeps the limits.
-fn judge(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcome> {
+/// Checks surfaces (with and without caps) and projections against their limits, and prints rows.
+fn check(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcome> {
     let device = common::device()?;
     let octree = common::octree(volume);
     let renderer = Renderer::new(&device, volume, &octree, Options::default()).unwrap();
-    let mut judge = Judge {
+    let mut subject = Subject {
         name,
         volume,
         renderer,
@@ -224,7 +168,7 @@ fn judge(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcom
     ];
     let mut undecided: f64 = 0.0;
     for caps in [true, false] {
-        let exact = judge.wrong(iso, caps);
+        let exact = subject.wrong(iso, caps);
         println!(
             "| {name}, caps {caps} | {} | {} | {:.1e} | {:.1e} | {:.1e} |",
             exact.missed, exact.extra, exact.p999, exact.max, exact.undecided
@@ -234,18 +178,18 @@ fn judge(name: &str, volume: &Volume, iso: f64, filter: Filter) -> Option<Outcom
         undecided = undecided.max(exact.undecided);
         assert!(exact.p999 <= DEPTH_P999_VOXELS, "{name}: {exact:?}");
     }
-    let (_, _, fixed) = judge.surface(iso, true, SamplingMethod::Fixed);
+    let (_, _, fixed) = subject.surface(iso, true, SamplingMethod::Fixed);
     let pixels = fixed.size.pixels() as u64;
     assert_eq!(
         fixed.undecided(),
         Some(pixels),
         "{name}: fixed steps prove nothing"
     );
-    let errors = projections.map(|of| judge.projection(of, SamplingMethod::Exact));
+    let errors = projections.map(|of| subject.projection(of, SamplingMethod::Exact));
     let [mip, minip, mean, lmip] = errors;
     println!("| {name} | mip {mip:.1e} | minip {minip:.1e} | mean {mean:.1e} | lmip {lmip:.1e} |");
     assert!(errors.iter().all(|&e| e <= VALUE_MAX), "{name}: {errors:?}");
-    let fixed = projections.map(|of| judge.projection(of, SamplingMethod::Fixed));
+    let fixed = projections.map(|of| subject.projection(of, SamplingMethod::Fixed));
     Some(Outcome {
         undecided,
         fixed_breaks: fixed.iter().any(|&e| e > VALUE_MAX),
@@ -270,7 +214,7 @@ fn phantoms() {
         let spec = PhantomSpec::new(kind, Dims::new([n, n, n]).unwrap());
         let volume = phantom(&spec).unwrap().volume;
         let iso = spec.values().at(0.5);
-        let Some(outcome) = judge(kind.name(), &volume, iso, Filter::Linear) else {
+        let Some(outcome) = check(kind.name(), &volume, iso, Filter::Linear) else {
             return;
         };
         assert!(outcome.undecided <= UNDECIDED, "{}", kind.name());
@@ -280,26 +224,26 @@ fn phantoms() {
     assert!(broken_by_fixed_steps >= 5, "{broken_by_fixed_steps}");
 }
 
-/// Volumes of which every limit but the certificate's is asked, and which fixed steps break.
-fn judge_hard(name: &str, volume: &Volume, iso: f64, filter: Filter) {
-    let outcome = judge(name, volume, iso, filter);
+/// Checks volumes on every limit but the certificate's, which fixed steps break.
+fn check_hard(name: &str, volume: &Volume, iso: f64, filter: Filter) {
+    let outcome = check(name, volume, iso, filter);
     assert!(outcome.is_none_or(|outcome| outcome.fixed_breaks), "{name}");
 }
 
 #[test]
 fn white_noise() {
     let volume = volume_of([40, 37, 33], |x, y, z| (255.0 * hash(x, y, z)) as u8);
-    judge_hard("white noise", &volume, 127.5, Filter::Linear);
+    check_hard("white noise", &volume, 127.5, Filter::Linear);
 }
 
 /// Surfaces that are plateaus, ridges and single points.
 #[test]
 fn few_values_and_the_iso_value_one_of_them() {
     let volume = volume_of([31, 33, 29], |x, y, z| (4.0 * hash(x, y, z)) as u8);
-    judge_hard("few values", &volume, 2.0, Filter::Linear);
+    check_hard("few values", &volume, 2.0, Filter::Linear);
 }
 
-/// The device's iso value is 2, a plateau's; the one that was asked for is beyond it.
+/// The device's iso value is 2, a plateau's; the requested one is beyond it.
 #[test]
 fn an_iso_value_between_two_floats() {
     let volume = volume_of([31, 33, 29], |x, y, z| (4.0 * hash(x, y, z)) as u8);
@@ -308,16 +252,16 @@ fn an_iso_value_between_two_floats() {
     };
     let octree = common::octree(&volume);
     let renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let mut judge = Judge {
+    let mut subject = Subject {
         name: "between floats",
         volume: &volume,
         renderer,
         filter: Filter::Linear,
     };
-    let (_, truth, frame) = judge.surface(2.0 + 1e-9, true, SamplingMethod::Exact);
+    let (_, reference, frame) = subject.surface(2.0 + 1e-9, true, SamplingMethod::Exact);
     // Rounded, it is hit where the other is not; nothing of that is called proven.
-    assert!(depth_error(&truth, &frame, 1.0).unwrap().extra > 0);
-    assert_eq!(disproven(&truth, &frame), 0);
+    assert!(depth_error(&reference, &frame, 1.0).unwrap().extra > 0);
+    assert_eq!(disproven(&reference, &frame), 0);
 }
 
 #[test]
@@ -325,50 +269,50 @@ fn floats_of_mixed_signs() {
     let volume = volume_of([24, 25, 26], |x, y, z| {
         (1e-3 * (2.0 * hash(x, y, z) - 1.0)) as f32
     });
-    judge_hard("mixed signs", &volume, 1.25e-5, Filter::Linear);
+    check_hard("mixed signs", &volume, 1.25e-5, Filter::Linear);
 }
 
 #[test]
 fn the_nearest_filter() {
     let volume = volume_of([17, 24, 9], |x, y, z| (255.0 * hash(x, y, z)) as u8);
-    judge_hard("nearest", &volume, 127.5, Filter::Nearest);
+    check_hard("nearest", &volume, 127.5, Filter::Nearest);
 }
 
 #[test]
 fn one_voxel_along_an_axis() {
     let volume = volume_of([33, 1, 29], |x, y, z| (255.0 * hash(x, y, z)) as u8);
-    judge_hard("sheet", &volume, 127.5, Filter::Linear);
+    check_hard("sheet", &volume, 127.5, Filter::Linear);
 }
 
-fn judge_real(name: &str, file: &str, iso: f64) {
+fn check_real(name: &str, file: &str, iso: f64) {
     let Some(volume) = common::real_volume(file) else {
         return;
     };
-    let outcome = judge(name, &volume, iso, Filter::Linear);
+    let outcome = check(name, &volume, iso, Filter::Linear);
     assert!(outcome.is_none_or(|o| o.fixed_breaks && o.undecided <= UNDECIDED));
 }
 
 #[test]
 fn real_aneurism() {
-    judge_real("aneurism", common::ANEURISM, 50.0);
+    check_real("aneurism", common::ANEURISM, 50.0);
 }
 
 #[test]
 fn real_ct_avm() {
-    judge_real("CT_AVM", common::CT_AVM, 150.0);
+    check_real("CT_AVM", common::CT_AVM, 150.0);
 }
 
 #[test]
 fn real_chris_mra() {
-    judge_real("chris_MRA", common::CHRIS_MRA, 80.0);
+    check_real("chris_MRA", common::CHRIS_MRA, 80.0);
 }
 
 #[test]
 fn real_aorta() {
-    judge_real("aorta", common::AORTA, 900.0);
+    check_real("aorta", common::AORTA, 900.0);
 }
 
 #[test]
 fn real_stent() {
-    judge_real("stent", common::STENT, 350.0);
+    check_real("stent", common::STENT, 350.0);
 }

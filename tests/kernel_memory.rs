@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
-use angioray::bench::aimed::{rays, target};
 use angioray::frame::Kind;
+use angioray::lab::bench::aimed::{rays, target};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::RayCaster;

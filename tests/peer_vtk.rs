@@ -6,7 +6,7 @@ mod common;
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::Frame;
 use angioray::frame::error::{color_error, depth_error};
-use angioray::measure::{Peer, PeerFrame, Readiness};
+use angioray::lab::measure::{Peer, PeerFrame, Readiness};
 use angioray::scene::{
     Camera, Emission, Knot, Lens, Light, Phong, Picture, Projection, Refine, Rgb, Scene,
     TransferFunction, Window,

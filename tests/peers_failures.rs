@@ -7,7 +7,7 @@ mod fake_peer;
 
 use std::time::{Duration, Instant};
 
-use angioray::measure::Peer;
+use angioray::lab::measure::Peer;
 use angioray::scene::{Emission, Knot, Picture, Rgb, TransferFunction};
 
 use fake_peer::{

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use angioray::frame::error::{color_error, depth_error};
-use angioray::measure::Readiness;
+use angioray::lab::measure::Readiness;
 use angioray::scene::{
     Camera, Emission, Knot, Lens, Light, Phong, Picture, Rgb, TransferFunction, srgb_from_linear,
 };

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use angioray::frame::read_metadata;
-use angioray::report::{
+use angioray::lab::report::{
     Axis, Bar, Bars, ErrorMap, Gallery, Mark, PairSetting, PairedPicture, Pairs, Picture, Point,
     Report, Scale, Scatter, Section, Shown, Table,
 };

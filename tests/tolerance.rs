@@ -7,12 +7,12 @@ mod common;
 use angioray::extent::Dims;
 use angioray::frame::error::{color_error, depth_error, value_error};
 use angioray::frame::{Frame, Wanted, read_metadata};
+use angioray::lab::tolerance::{Choice, Task, candidates, choose};
 use angioray::octree::Octree;
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{ErrorBound, ErrorMetric, Mode, SceneOptions, Subject};
-use angioray::tolerance::{Choice, Task, candidates, choose};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use cli_place::{Place, stderr};
 

@@ -2,10 +2,12 @@
 //! ([`write()`]) and compared with each other ([`mod@error`]).
 
 mod animation;
+mod bit_equal;
 mod channel;
 pub mod error;
 mod exr;
 mod format;
+mod image_error;
 mod jpeg;
 mod metadata;
 mod npy;

@@ -41,12 +41,12 @@ fn resuming_makes_what_is_missing_torn_or_of_another_scene() {
         let output = place.run(&format!("{} --resume", line(&part, 70)));
         let said = stderr(&output);
         assert!(output.status.success(), "{said}");
-        assert!(said.contains(": 5 frames, 3 were there"), "{said}");
+        assert!(said.contains(": 5 frames, 3 existed"), "{said}");
         assert_eq!(contents(&place, &part), contents(&place, &whole));
         assert_eq!(before, [0, 4, 7].map(kept));
         // Nothing is left to do; of another scene, or coded otherwise, all is.
         let said = stderr(&place.run(&format!("{} --resume", line(&part, 70))));
-        assert!(said.contains("nothing to do, 8 were there"), "{said}");
+        assert!(said.contains("nothing to do, 8 existed"), "{said}");
         let said = stderr(&place.run(&format!("{} --resume --zoom 2", line(&part, 70))));
         assert!(said.contains(": 8 frames, iso"), "{said}");
     }
@@ -70,7 +70,7 @@ fn frames_of_another_volume_under_its_name_are_made_again() {
     // The control: written anew, but the same.
     place.done("phantom vessels -o v.nrrd --size 24 --seed 2");
     let said = stderr(&place.run(&line));
-    assert!(said.contains("nothing to do, 3 were there"), "{said}");
+    assert!(said.contains("nothing to do, 3 existed"), "{said}");
     place.done("phantom vessels -o v.nrrd --size 24 --seed 3");
     let said = stderr(&place.run(&line));
     assert!(said.contains(": 3 frames, iso"), "{said}");
@@ -95,6 +95,6 @@ fn frames_by_another_device_are_made_again() {
         assert!(said.contains(": 2 frames, iso"), "{said}");
         // The control.
         let said = stderr(&place.run(&line(&device)));
-        assert!(said.contains("nothing to do, 2 were there"), "{said}");
+        assert!(said.contains("nothing to do, 2 existed"), "{said}");
     }
 }

@@ -61,7 +61,7 @@ fn they_are_written_where_nothing_was_made_too() {
     assert_eq!(place.json("s.json")["orbit"]["kept"], 0);
     assert_eq!(place.json("s.json")["frames"][1]["index"], 1);
     let said = stderr(&place.run(&format!("{orbit} --frames 2 --resume --stats s.json")));
-    assert!(said.contains("nothing to do, 2 were there"), "{said}");
+    assert!(said.contains("nothing to do, 2 existed"), "{said}");
     let stats = place.json("s.json");
     assert_eq!(stats["orbit"]["kept"], 2);
     assert_eq!(stats["frames"], serde_json::json!([]));

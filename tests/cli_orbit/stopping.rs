@@ -62,7 +62,7 @@ fn a_stopped_orbit_leaves_whole_frames_and_is_gone_on_with() {
 
     let said = stderr(&place.run(&format!("{} --resume", line("f"))));
     let (made, kept) = (60 - stopped.len(), stopped.len());
-    let counted = format!(": {made} frames, {kept} were there");
+    let counted = format!(": {made} frames, {kept} existed");
     assert!(said.contains(&counted), "{said}");
     place.done(&line("whole"));
     assert_eq!(contents(&place, "f"), contents(&place, "whole"));
@@ -86,7 +86,8 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
         assert_eq!(output.status.code(), Some(75), "{said}");
         let made = contents(&place, &frames).len();
         assert!((3..40).contains(&made), "{made}");
-        let counted = format!("stopped early: {made} of 40 frames are made and kept in {frames}");
+        let counted =
+            format!("stopped early: {made} of 40 frames are finished and saved in {frames}");
         assert!(
             said.contains(&counted) && said.contains("--resume"),
             "{said}"
@@ -100,7 +101,7 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
         // A frame that is torn is made again.
         fs::write(place.path(&format!("{frames}/000001.png")), "torn").unwrap();
         let said = stderr(&place.run(&format!("{} --resume", line("f/a"))));
-        let counted = format!(": {} frames, {} were there", 41 - made, made - 1);
+        let counted = format!(": {} frames, {} existed", 41 - made, made - 1);
         assert!(said.contains(&counted), "{said}");
         assert_eq!(names("f"), [format!("a.{format}").as_str()]);
         place.done(&line("whole"));
@@ -124,10 +125,7 @@ fn frames_of_an_animation_that_are_all_kept_are_joined_and_others_are_made_anew(
     let right = fs::read(place.path("a.gif")).unwrap();
     keep(1);
     let said = stderr(&place.run(&format!("{} --resume", line(1))));
-    assert!(
-        said.contains("wrote a.gif of 4 frames that were there"),
-        "{said}"
-    );
+    assert!(said.contains("wrote a.gif of 4 existing frames"), "{said}");
     assert!(fs::read(place.path("a.gif")).unwrap() == right);
     assert!(!place.path("a.gif.frames").exists());
     // Of another scene, and without --resume; what else lies in the folder stays.
@@ -191,7 +189,7 @@ fn an_orbit_under_an_error_bound_is_gone_on_with_by_the_flags_that_were_chosen()
     let metadata = read_metadata(&place.path("f/000.png")).unwrap();
 
     let said = stderr(&place.run(&format!("{orbit} {flags} --resume {device}")));
-    let counted = format!(": {} frames, {made} were there", 400 - made);
+    let counted = format!(": {} frames, {made} existed", 400 - made);
     assert!(said.contains(&counted), "{flags}: {said}");
     assert_eq!(read_metadata(&place.path("f/000.png")).unwrap(), metadata);
 }

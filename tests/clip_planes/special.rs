@@ -1,8 +1,8 @@
 //! Planes along the rays, through the eye, redundant, contradictory, many, of any length, and far
 //! from the origin.
 
-use angioray::bench::Judge;
 use angioray::frame::Kind;
+use angioray::lab::measure::HitJudge;
 
 use super::*;
 
@@ -271,7 +271,7 @@ struct Proven {
 
 impl Proven {
     fn add(&mut self, device: &Device, volume: &Volume, scene: &Scene) {
-        let judge = Judge::new(volume, scene).unwrap();
+        let judge = HitJudge::new(volume, scene).unwrap();
         let frame = on_device(device, volume, std::slice::from_ref(scene)).remove(0);
         let kinds = frame.kind.as_ref().unwrap();
         let certificates = frame.certificate.as_ref().unwrap();
@@ -279,7 +279,7 @@ impl Proven {
         for (pixel, (&kind, &certificate)) in kinds.iter().zip(certificates).enumerate() {
             let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
             let ray = scene.camera.ray(scene.size, x, y);
-            let truth = judge.truth(ray);
+            let truth = judge.reference(ray);
             let hits = truth.kind != Kind::Nothing;
             let says = [Some(false), Some(true), None][certificate as usize];
             self.rays += 1;

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use angioray::Result;
 use angioray::extent::{Dims, ImageSize};
-use angioray::measure::{Peer, PeerFrame, PeerScene, Readiness};
+use angioray::lab::measure::{Peer, PeerFrame, PeerScene, Readiness};
 use angioray::scene::{Picture, Projection, Scene, Window};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DVec3};

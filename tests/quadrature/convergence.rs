@@ -1,7 +1,7 @@
 //! The observed order of convergence of each fixed-step rule on smooth scenes. `angioray bench
 //! convergence` prints it.
 
-use angioray::bench::convergence::{
+use angioray::lab::bench::convergence::{
     Errors, FLOOR_OF_FEW, ORDERS, Smooth, errors, halvings, observed_order,
 };
 use angioray::scene::QuadratureMethod;
@@ -62,6 +62,6 @@ fn a_homogeneous_medium_is_exact_at_any_step() {
         assert!(error < 1e-6, "{method}: {error}");
     }
     // The control: a thousandth denser.
-    scene.truth[3] *= 1.001;
+    scene.reference[3] *= 1.001;
     assert!(most(&scene, QuadratureMethod::Simpson) > 1e-6);
 }

@@ -11,8 +11,8 @@ mod layers;
 mod spike;
 mod unlike;
 
-use angioray::bench::convergence::{self as convergence_of, apart};
 use angioray::gpu::Device;
+use angioray::lab::bench::convergence::{self as convergence_of, apart};
 use angioray::scene::{Emission, Knot, Rgb, Scene};
 use angioray::volume::Volume;
 use glam::DVec3;

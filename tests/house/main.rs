@@ -1,0 +1,5 @@
+//! The house rules that the sources themselves must keep.
+
+mod circles;
+mod functions;
+mod sources;

@@ -1,4 +1,4 @@
-//! `angioray bench` stopped and gone on with, from outside. Without a device the tests say so and
+//! `angioray bench` stopped and resumed, from outside. Without a device the tests say so and
 //! pass, unless REQUIRE_OPENCL=1.
 #![cfg(unix)]
 
@@ -86,7 +86,7 @@ fn a_stopped_run_goes_on_where_it_was() {
     assert_eq!(code, 75, "{said}");
     assert!(said.contains("error: stopped before the end; "), "{said}");
     assert!(
-        said.contains("hint: the same command goes on from there"),
+        said.contains("hint: the same command resumes from there"),
         "{said}"
     );
     let first = place.json("out/results.json");
@@ -101,7 +101,7 @@ fn a_stopped_run_goes_on_where_it_was() {
     let (code, said) = stopped(&place, &line("out"), "out", units, "INT");
     assert_eq!(code, 75, "{said}");
     assert!(
-        said.contains("going on with what was measured before"),
+        said.contains("units of work were measured before"),
         "{said}"
     );
     let second = rows(&place, "out");
@@ -119,6 +119,44 @@ fn a_stopped_run_goes_on_where_it_was() {
     let other = rows(&place, "other");
     assert_eq!(lasting(&whole), lasting(&other));
     assert_ne!(whole, other);
+}
+
+/// Other kernels, from a folder: the embedded ones, one of them changed.
+fn check_other_kernels(place: &Place, line: &str) {
+    let kernels = place.path("kernels");
+    for file in angioray::gpu::files() {
+        let copy = kernels.join(file);
+        std::fs::create_dir_all(copy.parent().unwrap()).unwrap();
+        std::fs::copy(Path::new("kernels").join(file), copy).unwrap();
+    }
+    let said_with_kernels = || {
+        let mut command = place.command(&format!("{line} --protocol static"));
+        let output = command.env("ANGIORAY_KERNELS", &kernels).output().unwrap();
+        stderr(&output)
+    };
+    // The control: the same kernels from elsewhere are no others.
+    let said = said_with_kernels();
+    assert!(said.contains("its protocol was"), "{said}");
+    let changed = kernels.join("lib/cubic.clh");
+    let text = std::fs::read_to_string(&changed).unwrap();
+    std::fs::write(&changed, text + "// another\n").unwrap();
+    let said = said_with_kernels();
+    assert!(said.contains("its kernels was"), "{said}");
+}
+
+/// Another build of the same version.
+fn check_other_build(place: &Place, line: &str) {
+    let other = place.path("angioray-other");
+    let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_angioray")).unwrap();
+    bytes.push(0);
+    std::fs::write(&other, bytes).unwrap();
+    let permissions = std::fs::metadata(env!("CARGO_BIN_EXE_angioray")).unwrap();
+    std::fs::set_permissions(&other, permissions.permissions()).unwrap();
+    let mut command = Command::new(&other);
+    let words = line.split_whitespace();
+    let output = command.args(words).current_dir(place.path("")).output();
+    let said = stderr(&output.unwrap());
+    assert!(said.contains("its program was"), "{said}");
 }
 
 #[test]
@@ -159,48 +197,18 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
     let said = refused(&format!("bench traversals {VOLUMES} --quick"));
     assert!(said.contains("its volumes was"), "{said}");
     place.done("phantom gaussian -o bump.nrrd --size 24");
-    // Other kernels, from a folder: the embedded ones, one of them changed.
-    let kernels = place.path("kernels");
-    for file in angioray::gpu::files() {
-        let copy = kernels.join(file);
-        std::fs::create_dir_all(copy.parent().unwrap()).unwrap();
-        std::fs::copy(Path::new("kernels").join(file), copy).unwrap();
-    }
-    let told_with_kernels = || {
-        let mut command = place.command(&format!("{line} --protocol static"));
-        let output = command.env("ANGIORAY_KERNELS", &kernels).output().unwrap();
-        stderr(&output)
-    };
-    // The control: the same kernels from elsewhere are no others.
-    let said = told_with_kernels();
-    assert!(said.contains("its protocol was"), "{said}");
-    let changed = kernels.join("lib/cubic.clh");
-    let text = std::fs::read_to_string(&changed).unwrap();
-    std::fs::write(&changed, text + "// another\n").unwrap();
-    let said = told_with_kernels();
-    assert!(said.contains("its kernels was"), "{said}");
-    // Another build of the same version.
-    let other = place.path("angioray-other");
-    let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_angioray")).unwrap();
-    bytes.push(0);
-    std::fs::write(&other, bytes).unwrap();
-    let permissions = std::fs::metadata(env!("CARGO_BIN_EXE_angioray")).unwrap();
-    std::fs::set_permissions(&other, permissions.permissions()).unwrap();
-    let mut command = Command::new(&other);
-    let words = line.split_whitespace();
-    let output = command.args(words).current_dir(place.path("")).output();
-    let said = stderr(&output.unwrap());
-    assert!(said.contains("its program was"), "{said}");
+    check_other_kernels(&place, &line);
+    check_other_build(&place, &line);
     let begun = place.run(&format!(
         "bench convergence --quick --restart -o out {device}"
     ));
     assert!(begun.status.success(), "{}", stderr(&begun));
-    assert!(!stderr(&begun).contains("going on"));
+    assert!(!stderr(&begun).contains("resumed"));
     assert_eq!(place.json("out/results.json")["experiment"], "convergence");
 }
 
 #[test]
-fn rays_that_are_stopped_go_on_and_end_as_if_they_never_were() {
+fn rays_that_are_stopped_resume_and_end_as_if_they_never_were() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -218,7 +226,7 @@ fn rays_that_are_stopped_go_on_and_end_as_if_they_never_were() {
     let output = place.run(&line("out"));
     let said = stderr(&output);
     assert!(output.status.success(), "{said}");
-    assert!(said.contains("going on with what was measured"), "{said}");
+    assert!(said.contains("resumed: "), "{said}");
     assert_eq!(all("out"), 300_000.0);
     place.done(&line("other"));
     assert_eq!(rows(&place, "out"), rows(&place, "other"));
@@ -259,7 +267,7 @@ fn a_line_torn_by_a_crash_is_measured_again() {
     let said = stderr(&output);
     assert!(output.status.success(), "{said}");
     assert!(
-        said.contains("going on with what was measured before"),
+        said.contains("units of work were measured before"),
         "{said}"
     );
     assert_eq!(rows(&place, "out").len(), ROWS);

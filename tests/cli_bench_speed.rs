@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use cli_place::{Place, stderr};
 use serde_json::Value;
 
-const LOOKS: [(&str, &str); 6] = [
+const PICTURES: [(&str, &str); 6] = [
     ("iso shaded", "exact"),
     ("iso shaded", "step 0.5"),
     ("mip", "exact"),
@@ -83,12 +83,78 @@ const KEYS: [&str; 20] = [
 ];
 const KEYS_BESIDE: [&str; 4] = ["peer", "peer_setting", "cpu_ratio", "wall_ratio"];
 
+/// The rows of one picture size; sampling alone reads voxels from so many storages.
+fn check_picture(results: &Value, picture: &str, storages: usize) {
+    for (mode, setting) in PICTURES {
+        let ours = rows(results).iter().filter(|row| {
+            row["picture"] == picture && row["mode"] == mode && row["setting"] == setting
+        });
+        let [ours] = ours.collect::<Vec<_>>()[..] else {
+            panic!("{mode}, {setting}, {picture}");
+        };
+        assert!(number(ours, "samples") > 0.0);
+    }
+    for mode in ["dvr", "dvr shaded"] {
+        let row = row(results, picture, "angioray", mode);
+        assert!(number(row, "color_max") <= 3.0 / 255.0, "{row}");
+        assert_eq!(row["cpu_ratio"], Value::Null);
+    }
+    for mode in ["iso shaded", "mip"] {
+        let exact = row(results, picture, "angioray", mode);
+        assert!(number(exact, "error") < 1e-5, "{exact}");
+        assert!(number(exact, "color_max") < 1e-2, "{exact}");
+        // The control: the black picture is wrong, by the same measure.
+        let black = row(results, picture, "black 1", mode);
+        assert!(number(black, "color_max") > 0.5, "{black}");
+        assert_eq!(black["note"], "black");
+        assert_eq!(
+            (number(black, "min_ms"), number(black, "cpu_median_ms")),
+            (7.0, 13.0)
+        );
+        assert_eq!(exact["peer_setting"], "plain");
+        // Both frames' ratios have one denominator, so that the ratio of medians is theirs.
+        let ratio = number(exact, "median_ms") / 7.0;
+        assert!(
+            (number(exact, "wall_ratio") / ratio - 1.0).abs() < 1e-9,
+            "{exact}"
+        );
+    }
+    let straight = row(results, picture, "sampling alone", "straight rays");
+    assert_eq!(straight["setting"], "step 1, voxels in: buffer");
+    assert_eq!(number(straight, "roofline_share"), 1.0);
+    assert_eq!(straight["outside_cast_share"], Value::Null);
+    let sampling = rows(results)
+        .iter()
+        .filter(|row| row["picture"] == picture && row["renderer"] == "sampling alone");
+    let sampling: Vec<&Value> = sampling.collect();
+    assert_eq!(sampling.len(), storages);
+    assert!(
+        sampling
+            .iter()
+            .all(|row| row["samples"] == straight["samples"])
+    );
+}
+
+/// How many samples rows take, against each other.
+fn check_samples(results: &Value) {
+    // Four times the rays take four times the samples; of the cells visited that holds too.
+    for (renderer, mode) in [("sampling alone", "straight rays"), ("angioray", "mean")] {
+        let of = |picture| number(row(results, picture, renderer, mode), "samples");
+        let ratio = of("256x256") / of("128x128");
+        assert!((ratio / 4.0 - 1.0).abs() < 0.02, "{mode}: {ratio}");
+    }
+    // The control: of other counts it does not. A straight ray passes more cells than voxels' lengths.
+    let samples = |renderer, mode| number(row(results, "256x256", renderer, mode), "samples");
+    assert!(samples("angioray", "mean") > 1.2 * samples("sampling alone", "straight rays"));
+    assert!(samples("angioray", "iso shaded") < 0.5 * samples("angioray", "mean"));
+}
+
 #[test]
-fn every_mode_is_timed_counted_and_judged_beside_sampling_alone_and_a_peer() {
+fn every_mode_is_timed_counted_and_evaluated_beside_sampling_alone_and_a_peer() {
     let Some(device) = common::device() else {
         return;
     };
-    let ways_to_hold = if common::has_images(&device).is_ok() {
+    let storages = if common::has_images(&device).is_ok() {
         3
     } else {
         1
@@ -108,66 +174,10 @@ fn every_mode_is_timed_counted_and_judged_beside_sampling_alone_and_a_peer() {
     assert!(KEYS.iter().all(|key| keys(&results).contains(key)));
     assert!(KEYS_BESIDE.iter().all(|key| keys(&results).contains(key)));
     for picture in ["128x128", "256x256"] {
-        for (mode, setting) in LOOKS {
-            let ours = rows(&results).iter().filter(|row| {
-                row["picture"] == picture && row["mode"] == mode && row["setting"] == setting
-            });
-            let [ours] = ours.collect::<Vec<_>>()[..] else {
-                panic!("{mode}, {setting}, {picture}");
-            };
-            assert!(number(ours, "samples") > 0.0);
-        }
-        for mode in ["dvr", "dvr shaded"] {
-            let row = row(&results, picture, "angioray", mode);
-            assert!(number(row, "color_max") <= 3.0 / 255.0, "{row}");
-            assert_eq!(row["cpu_ratio"], Value::Null);
-        }
-        for mode in ["iso shaded", "mip"] {
-            let exact = row(&results, picture, "angioray", mode);
-            assert!(number(exact, "error") < 1e-5, "{exact}");
-            assert!(number(exact, "color_max") < 1e-2, "{exact}");
-            // The control: the black picture is wrong, by the same measure.
-            let black = row(&results, picture, "black 1", mode);
-            assert!(number(black, "color_max") > 0.5, "{black}");
-            assert_eq!(black["note"], "black");
-            assert_eq!(
-                (number(black, "min_ms"), number(black, "cpu_median_ms")),
-                (7.0, 13.0)
-            );
-            assert_eq!(exact["peer_setting"], "plain");
-            // Both frames' ratios have one denominator, so that the ratio of medians is theirs.
-            let ratio = number(exact, "median_ms") / 7.0;
-            assert!(
-                (number(exact, "wall_ratio") / ratio - 1.0).abs() < 1e-9,
-                "{exact}"
-            );
-        }
-        let straight = row(&results, picture, "sampling alone", "straight rays");
-        assert_eq!(straight["setting"], "step 1, voxels in: buffer");
-        assert_eq!(number(straight, "roofline_share"), 1.0);
-        assert_eq!(straight["outside_cast_share"], Value::Null);
-        let sampling = rows(&results)
-            .iter()
-            .filter(|row| row["picture"] == picture && row["renderer"] == "sampling alone");
-        let sampling: Vec<&Value> = sampling.collect();
-        assert_eq!(sampling.len(), ways_to_hold);
-        assert!(
-            sampling
-                .iter()
-                .all(|row| row["samples"] == straight["samples"])
-        );
+        check_picture(&results, picture, storages);
     }
     assert!(rows(&results).iter().all(|row| row["frames"] == 2.0));
-    // Four times the rays take four times the samples; of the walk through cells that holds too.
-    for (renderer, mode) in [("sampling alone", "straight rays"), ("angioray", "mean")] {
-        let of = |picture| number(row(&results, picture, renderer, mode), "samples");
-        let ratio = of("256x256") / of("128x128");
-        assert!((ratio / 4.0 - 1.0).abs() < 0.02, "{mode}: {ratio}");
-    }
-    // The control: of other counts it does not. A straight ray passes more cells than voxels' lengths.
-    let samples = |renderer, mode| number(row(&results, "256x256", renderer, mode), "samples");
-    assert!(samples("angioray", "mean") > 1.2 * samples("sampling alone", "straight rays"));
-    assert!(samples("angioray", "iso shaded") < 0.5 * samples("angioray", "mean"));
+    check_samples(&results);
 
     // Without the peer; what was built then is found again.
     let line = format!("bench speed ball.nrrd --iso 50% --quick --frames 1 -o alone {device}");
@@ -187,7 +197,7 @@ fn every_mode_is_timed_counted_and_judged_beside_sampling_alone_and_a_peer() {
 }
 
 #[test]
-fn a_peer_that_does_not_start_is_told_before_the_work() {
+fn a_peer_that_does_not_start_is_reported_before_the_work() {
     let Some(device) = common::device_flag() else {
         return;
     };

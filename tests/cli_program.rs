@@ -228,6 +228,7 @@ fn defaults_chosen_for_the_user_are_said_in_one_line() {
     assert_eq!(said("--mode dvr --tf mra"), 0);
 }
 
+// long: the table of cases.
 #[test]
 fn wrong_usage_is_exit_2() {
     let place = Place::with_ball();
@@ -342,6 +343,17 @@ fn case(name: &str) -> String {
     cases.join(name).display().to_string()
 }
 
+/// An archive whose members' names a terminal would act upon.
+fn write_forged_archive(place: &Place, name: &str) {
+    let npz = std::fs::File::create(place.path(name)).unwrap();
+    let mut npz = zip::ZipWriter::new(npz);
+    for name in ["a\u{1b}[31m\u{202e}.npy", "b\nerror: c.npy"] {
+        let options = zip::write::SimpleFileOptions::default();
+        npz.start_file(name, options).unwrap();
+    }
+    npz.finish().unwrap();
+}
+
 #[test]
 fn no_input_reaches_the_terminal_raw() {
     let place = Place::with_ball();
@@ -367,43 +379,19 @@ fn no_input_reaches_the_terminal_raw() {
         units.contains("mm\\u{1b}[31mRED\\u{1b}]0;owned\\u{7}"),
         "{units}"
     );
-    let size = said(
-        &[
-            "render",
-            "ball.nrrd",
-            "-o",
-            "a.png",
-            "--scene",
-            &case("esc-scene.toml"),
-        ],
-        2,
-    );
+    let render = |more: &[&str]| {
+        let line = [&["render", "ball.nrrd", "-o", "a.png"], more].concat();
+        said(&line, 2)
+    };
+    let size = render(&["--scene", &case("esc-scene.toml")]);
     assert!(size.contains("\\u{1b}[31mx"), "{size}");
-    let transfer = [
-        "render",
-        "ball.nrrd",
-        "-o",
-        "a.png",
-        "--mode",
-        "dvr",
-        "--tf",
-    ];
-    let tf = said(&[&transfer[..], &[&case("esc-tf.toml")]].concat(), 2);
+    let tf = render(&["--mode", "dvr", "--tf", &case("esc-tf.toml")]);
     assert!(tf.contains("\\u{1b}[31mx\\u{1b}]0;owned\\u{7}"), "{tf}");
     place.write("key.toml", "\"a\\u001b[31m\\nerror: b\" = 1\n");
-    let key = said(
-        &["render", "ball.nrrd", "-o", "a.png", "--scene", "key.toml"],
-        2,
-    );
+    let key = render(&["--scene", "key.toml"]);
     assert!(key.contains("a\\u{1b}[31m\\nerror: b"), "{key}");
     // Members of an archive.
-    let npz = std::fs::File::create(place.path("a.npz")).unwrap();
-    let mut npz = zip::ZipWriter::new(npz);
-    for name in ["a\u{1b}[31m\u{202e}.npy", "b\nerror: c.npy"] {
-        let options = zip::write::SimpleFileOptions::default();
-        npz.start_file(name, options).unwrap();
-    }
-    npz.finish().unwrap();
+    write_forged_archive(&place, "a.npz");
     said(&["info", "a.npz"], 65);
     // Names of files, there and not there.
     std::fs::copy(place.path("ball.nrrd"), place.path(FORGED)).unwrap();

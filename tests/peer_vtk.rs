@@ -60,17 +60,8 @@ fn moved(frame: &Frame) -> [Frame; 4] {
     [1, row, all - 1, all - row].map(rotated)
 }
 
-/// The peer that `ANGIORAY_PEER` names draws the reference's pictures, and not those of a pixel
-/// beside, whatever the camera and the volume's place.
-#[test]
-fn a_real_peer_draws_what_the_reference_draws() {
-    let Ok(command) = std::env::var("ANGIORAY_PEER") else {
-        eprintln!("skipped: ANGIORAY_PEER names no peer");
-        return;
-    };
-    let volume = tubes();
-    let mut peer = Peer::start(&command).unwrap();
-    peer.load(&volume).unwrap();
+/// Every kind of picture from every kind of camera, lit in every way.
+fn scenes(volume: &Volume) -> Vec<Scene> {
     let knot = |value, [r, g, b]: [f64; 3], opacity| Knot {
         value,
         color: Rgb([r, g, b]),
@@ -121,11 +112,25 @@ fn a_real_peer_draws_what_the_reference_draws() {
             size: ImageSize::new(160, 120).unwrap(),
             camera: Camera::look_at(eye, center, DVec3::new(0.2, 0.1, 1.0), lens).unwrap(),
             light,
-            ..common::scene(&volume, 8, picture.clone())
+            ..common::scene(volume, 8, picture.clone())
         })
     });
+    scenes.collect()
+}
+
+/// The peer that `ANGIORAY_PEER` names draws the reference's pictures, and not those of a pixel
+/// beside, whatever the camera and the volume's place.
+#[test]
+fn a_real_peer_draws_what_the_reference_draws() {
+    let Ok(command) = std::env::var("ANGIORAY_PEER") else {
+        eprintln!("skipped: ANGIORAY_PEER names no peer");
+        return;
+    };
+    let volume = tubes();
+    let mut peer = Peer::start(&command).unwrap();
+    peer.load(&volume).unwrap();
     let mut drawn = 0;
-    for scene in scenes {
+    for scene in scenes(&volume) {
         let truth = common::on_reference(&volume, &scene);
         for setting in peer.settings(scene.picture.mode()) {
             let ready = match peer.prepare(&volume, &scene, &setting).unwrap() {

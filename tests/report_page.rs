@@ -615,6 +615,7 @@ const CLIPPED: &str = "const name = (e) => `${e.tagName}.${e.getAttribute('class
         && (c.getBoundingClientRect().right > e.getBoundingClientRect().right || c.scrollWidth > c.clientWidth + 1)))].map(name);";
 
 /// Names and figures as long as they get.
+// long: one page, written out.
 fn with_long_names() -> Report {
     let long = "VTK 9.7.2: fixed-point, step 0.5";
     let mut report = in_modes();

@@ -20,7 +20,8 @@ mod whole;
 mod write;
 
 pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
-pub use format::{BitDepth, Encoding, Format, channels};
+pub use channel::channels;
+pub use format::{BitDepth, Encoding, Format};
 pub use metadata::{carrier, read_encoding, read_metadata};
 pub use percentile::{median, percentile};
 pub use png::read_display;

@@ -2,6 +2,7 @@
 
 use super::{REFERENCE, place};
 
+// long: the table of cases.
 #[test]
 fn orbits_that_make_no_sense_are_refused() {
     let place = place();

@@ -31,15 +31,9 @@ fn values_of_any_magnitude() {
     report(&wrong);
 }
 
-/// The iso value at a voxel's value, a plateau, the ends of the range, beyond them. Caps make what
-/// lies at the iso value itself visible.
-#[test]
-fn iso_values_of_any_kind() {
-    let Some(device) = common::device() else {
-        return;
-    };
-    // A plateau of 100 in the middle, a single voxel of 200, 20 outside.
-    let volume = volume_of([12, 13, 11], |x, y, z| {
+/// A plateau of 100 in the middle, a single voxel of 200, 20 outside.
+fn plateau() -> Volume {
+    volume_of([12, 13, 11], |x, y, z| {
         if [x, y, z] == [6.0, 6.0, 5.0] {
             200u8
         } else if (3.0..9.0).contains(&x) && (3.0..9.0).contains(&y) && (3.0..8.0).contains(&z) {
@@ -47,7 +41,17 @@ fn iso_values_of_any_kind() {
         } else {
             20
         }
-    });
+    })
+}
+
+/// The iso value at a voxel's value, a plateau, the ends of the range, beyond them. Caps make what
+/// lies at the iso value itself visible.
+#[test]
+fn iso_values_of_any_kind() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = plateau();
     let trial = Trial {
         device: &device,
         volume: &volume,

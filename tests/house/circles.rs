@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::sources::{Source, sources};
 
 /// Top-level modules that are being rebuilt and are not checked yet.
-const EXCEPTED: [&str; 3] = ["render", "scene", "options"];
+const EXCEPTED: [&str; 4] = ["gpu", "render", "scene", "options"];
 
 /// A module's path from the crate's root, such as `["lab", "bench"]`.
 type Module = Vec<String>;

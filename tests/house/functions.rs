@@ -53,10 +53,11 @@ impl Function<'_> {
 /// The name of the function that a line begins, where it begins one.
 fn name_of(line: &str) -> Option<&str> {
     let mut words = line.trim_start();
+    if let Some(rest) = words.strip_prefix("pub(") {
+        words = rest.split_once(") ").map_or(words, |(_, rest)| rest);
+    }
     for qualifier in [
         "pub ",
-        "pub(super) ",
-        "pub(crate) ",
         "const ",
         "async ",
         "unsafe ",

@@ -170,6 +170,7 @@ fn random_planes_cut_where_their_equations_say() {
 }
 
 /// Small whole numbers: a ray in a plane, beside it, along it, and planes through its start.
+// long: the table of cases.
 #[test]
 fn rays_along_and_in_planes_are_exact() {
     let case = |origin, dir| Case {

@@ -178,6 +178,7 @@ fn random_rays_enter_and_leave_where_slabs_say() {
 
 /// Rays along an axis and along diagonals from and through faces, edges and corners, with every
 /// kind of zero in the other components: exact, since all numbers are small integers.
+// long: the cases and what is expected of them.
 #[test]
 fn rays_in_faces_edges_and_corners_are_exact() {
     let zeros = [

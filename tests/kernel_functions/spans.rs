@@ -27,6 +27,7 @@ fn first_three([x, y, z, _]: [u32; 4]) -> [u32; 3] {
     [x, y, z]
 }
 
+// long: the kernel's arguments, three times in one order.
 fn on_device(
     size: [u32; 3],
     leaf: u32,

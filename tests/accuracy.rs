@@ -25,13 +25,13 @@ const MIP_MEAN: f64 = 0.002;
 const DVR_MAX: f64 = 2.0 / 255.0;
 
 /// One volume on the device and on the reference.
-struct Judge<'a> {
+struct Subject<'a> {
     name: &'a str,
     volume: &'a Volume,
     renderer: Renderer<'a>,
 }
 
-impl Judge<'_> {
+impl Subject<'_> {
     /// From where the ramp is not all cap.
     fn scene(&self, picture: Picture, step_voxels: f64) -> Scene {
         let mut scene = common::scene(self.volume, SIZE_PX, picture);
@@ -124,20 +124,20 @@ impl Judge<'_> {
 }
 
 /// Renders the volume in three modes, keeps the limits, prints its row.
-fn judge(name: &str, volume: &Volume, iso: f64) {
+fn check(name: &str, volume: &Volume, iso: f64) {
     let Some(device) = common::device() else {
         return;
     };
     let octree = common::octree(volume);
     let renderer = Renderer::new(&device, volume, &octree, Options::default()).unwrap();
-    let mut judge = Judge {
+    let mut subject = Subject {
         name,
         volume,
         renderer,
     };
-    let (surface, plain_surface) = judge.surface(iso);
-    let (maximum, plain_maximum) = judge.maximum();
-    let emission = judge.emission();
+    let (surface, plain_surface) = subject.surface(iso);
+    let (maximum, plain_maximum) = subject.maximum();
+    let emission = subject.emission();
     println!(
         "| {name} | {} | {} ({}) | {} ({}) | {:.5} ({:.5}) | {:.4} % ({:.4} %) | {:.2} |",
         surface.reference_hits,
@@ -153,83 +153,83 @@ fn judge(name: &str, volume: &Volume, iso: f64) {
     );
 }
 
-fn judge_phantom(kind: PhantomKind) {
+fn check_phantom(kind: PhantomKind) {
     let n = match kind {
         PhantomKind::Voxel => 12, // enough pixels for the one voxel
         _ => u64::from(kind.default_size()).min(64),
     };
     let spec = PhantomSpec::new(kind, Dims::new([n, n, n]).unwrap());
     let volume = phantom(&spec).unwrap().volume;
-    judge(kind.name(), &volume, spec.values().at(0.5));
+    check(kind.name(), &volume, spec.values().at(0.5));
 }
 
-fn judge_real(name: &str, file: &str, iso: f64) {
+fn check_real(name: &str, file: &str, iso: f64) {
     if let Some(volume) = common::real_volume(file) {
-        judge(name, &volume, iso);
+        check(name, &volume, iso);
     }
 }
 
 #[test]
 fn sphere() {
-    judge_phantom(PhantomKind::Sphere);
+    check_phantom(PhantomKind::Sphere);
 }
 
 #[test]
 fn slab() {
-    judge_phantom(PhantomKind::Slab);
+    check_phantom(PhantomKind::Slab);
 }
 
 #[test]
 fn ramp() {
-    judge_phantom(PhantomKind::Ramp);
+    check_phantom(PhantomKind::Ramp);
 }
 
 #[test]
 fn gaussian() {
-    judge_phantom(PhantomKind::Blob);
+    check_phantom(PhantomKind::Blob);
 }
 
 #[test]
 fn marschner_lobb() {
-    judge_phantom(PhantomKind::MarschnerLobb);
+    check_phantom(PhantomKind::MarschnerLobb);
 }
 
 #[test]
 fn voxel() {
-    judge_phantom(PhantomKind::Voxel);
+    check_phantom(PhantomKind::Voxel);
 }
 
 #[test]
 fn noise() {
-    judge_phantom(PhantomKind::Noise);
+    check_phantom(PhantomKind::Noise);
 }
 
 #[test]
 fn vessels() {
-    judge_phantom(PhantomKind::Vessels);
+    check_phantom(PhantomKind::Vessels);
 }
 
 #[test]
 fn real_aneurism() {
-    judge_real("aneurism", common::ANEURISM, 50.0);
+    check_real("aneurism", common::ANEURISM, 50.0);
 }
 
 #[test]
 fn real_ct_avm() {
-    judge_real("CT_AVM", common::CT_AVM, 150.0);
+    check_real("CT_AVM", common::CT_AVM, 150.0);
 }
 
 #[test]
 fn real_chris_mra() {
-    judge_real("chris_MRA", common::CHRIS_MRA, 80.0);
+    check_real("chris_MRA", common::CHRIS_MRA, 80.0);
 }
 
 #[test]
 fn real_aorta() {
-    judge_real("aorta", common::AORTA, 900.0);
+    check_real("aorta", common::AORTA, 900.0);
 }
 
 #[test]
 fn real_stent() {
-    judge_real("stent", common::STENT, 350.0);
+    check_real("stent", common::STENT, 350.0);
 }

@@ -36,14 +36,14 @@ impl Done {
         self.results["rows"].as_array().unwrap()
     }
 
-    /// The row of a way.
-    fn way(&self, way: &str) -> &Value {
-        let found = self.rows().iter().find(|row| row["way"] == way);
-        found.unwrap_or_else(|| panic!("no way '{way}' in {:#}", self.results))
+    /// The row of a case.
+    fn case(&self, case: &str) -> &Value {
+        let row = self.rows().iter().find(|row| row["way"] == case);
+        row.unwrap_or_else(|| panic!("no case '{case}' in {:#}", self.results))
     }
 
-    fn number(&self, way: &str, key: &str) -> f64 {
-        self.way(way)[key].as_f64().unwrap()
+    fn number(&self, case: &str, key: &str) -> f64 {
+        self.case(case)[key].as_f64().unwrap()
     }
 
     /// Every time is positive, and a frame a second is its inverse.
@@ -75,8 +75,8 @@ fn b1_skipping_changes_nothing_and_large_steps_lose_thin_vessels() {
     let Some(done) = done("b1") else { return };
     done.check_times();
     assert_eq!(done.rows().len(), 6);
-    assert_eq!(done.way("+ skipping")["same_bytes"], "yes");
-    let missed = |way: &str| done.number(way, "missed_share");
+    assert_eq!(done.case("+ skipping")["same_bytes"], "yes");
+    let missed = |case: &str| done.number(case, "missed_share");
     assert_eq!(missed("exact"), 0.0);
     let (fine, coarse) = (
         missed("basic: step 1"),
@@ -85,9 +85,9 @@ fn b1_skipping_changes_nothing_and_large_steps_lose_thin_vessels() {
     assert!(coarse > 0.1 && coarse > 3.0 * fine, "{fine} {coarse}");
     // Refinement finds the depth, but no hit.
     assert_eq!(coarse, missed("+ skipping, step 5"));
-    let depth = |way: &str| done.number(way, "depth_mean_voxels");
+    let depth = |case: &str| done.number(case, "depth_mean_voxels");
     assert!(depth("+ skipping, step 5 refined") < depth("+ skipping, step 5"));
-    let paper = done.way("+ skipping")["paper_speedup"].as_f64().unwrap();
+    let paper = done.case("+ skipping")["paper_speedup"].as_f64().unwrap();
     assert!((paper - 24.3 / 4.4).abs() < 1e-12, "{paper}");
 }
 
@@ -110,19 +110,19 @@ fn b3_the_depth_is_refined_to_a_fraction_of_the_step() {
 fn b2_and_b9_sum_light_alike_whatever_is_left_out() {
     let Some(shaded) = done("b2") else { return };
     shaded.check_times();
-    for way in ["unshaded", "shaded"] {
-        assert!(shaded.number(way, "rmse") < 0.01, "{:#}", shaded.results);
+    for case in ["unshaded", "shaded"] {
+        assert!(shaded.number(case, "rmse") < 0.01, "{:#}", shaded.results);
     }
     let Some(ended) = done_of("b9", "gaussian", "") else {
         return;
     };
-    assert_eq!(ended.way("ends at 0.99, octree")["same_bytes"], "yes");
-    let samples = |way: &str| ended.number(way, "samples_per_ray");
+    assert_eq!(ended.case("ends at 0.99, octree")["same_bytes"], "yes");
+    let samples = |case: &str| ended.number(case, "samples_per_ray");
     assert!(samples("ends at 0.99") < samples("to the end"));
     // Nothing is transparent, so that the octree skips nothing; rays beside the volume take none.
     assert!(samples("ends at 0.99") > 0.0);
     assert_eq!(samples("ends at 0.99, octree"), samples("ends at 0.99"));
-    let paper = &ended.way("ends at 0.99, octree")["paper_fps"];
+    let paper = &ended.case("ends at 0.99, octree")["paper_fps"];
     assert_eq!(*paper, Value::Null);
     // What a ray loses by ending early.
     assert!(ended.number("ends at 0.99", "max") >= ended.number("to the end", "max"));
@@ -143,7 +143,7 @@ fn b8_b13_and_b16_give_one_picture_whatever_leaf_planes_and_traversal() {
     let Some(march) = done("b16") else { return };
     assert_eq!(planes.results["size"], Value::Null);
     assert_eq!((march.rows().len(), rows_same(&march)), (4, 3));
-    let samples = |way: &str| march.number(way, "samples_per_ray");
+    let samples = |case: &str| march.number(case, "samples_per_ray");
     assert!(samples("octree, kd-restart") < 0.8 * samples("march"));
 }
 

@@ -28,8 +28,10 @@ fn settings(results: &Value, mode: &str) -> Vec<Setting> {
 }
 
 fn error_of(settings: &[Setting], name: &str) -> f64 {
-    let found = settings.iter().find(|one| one.name == name);
-    found.unwrap_or_else(|| panic!("no setting '{name}'")).error
+    let setting = settings.iter().find(|one| one.name == name);
+    setting
+        .unwrap_or_else(|| panic!("no setting '{name}'"))
+        .error
 }
 
 #[test]
@@ -67,14 +69,18 @@ fn the_grid_is_judged_and_nothing_clearly_beats_its_front() {
         "{coarse} {fine} {exact}"
     );
     // Ways of skipping change no picture, so no error.
-    for way in [
+    for traversal in [
         "uniform",
         "kd-restart",
         "hierarchical",
         "revelles",
         "no skipping",
     ] {
-        assert_eq!(error_of(&iso, &format!("exact, {way}")), exact, "{way}");
+        assert_eq!(
+            error_of(&iso, &format!("exact, {traversal}")),
+            exact,
+            "{traversal}"
+        );
     }
     let mip = settings(&results, "mip");
     assert!(error_of(&mip, "exact") < 1e-6, "a share of the range");

@@ -13,7 +13,7 @@ use cli_place::{Place, stderr};
 use serde_json::Value;
 
 /// Four volumes, so that a run has twenty units of work: many more are left than a fast device ends
-/// between a look into the journal and the signal's arrival.
+/// between a reading of the journal and the signal's arrival.
 fn place() -> Place {
     let place = Place::with_ball();
     place.done("phantom gaussian -o bump.nrrd --size 24");
@@ -60,7 +60,7 @@ fn rows(place: &Place, folder: &str) -> Vec<Value> {
     results["rows"].as_array().unwrap().clone()
 }
 
-/// What of the rows does not depend on the moment.
+/// What of the rows does not depend on time.
 fn lasting(rows: &[Value]) -> Vec<String> {
     let keys = [
         "volume",

@@ -1,5 +1,5 @@
 //! `angioray bench speed` from outside: its rows, their counters and errors, and a peer beside them; no
-//! time is judged. Without a device the tests say so and pass, unless REQUIRE_OPENCL=1.
+//! time is checked. Without a device the tests say so and pass, unless REQUIRE_OPENCL=1.
 
 mod cli_place;
 mod common;

@@ -15,8 +15,8 @@ fn rows(results: &Value) -> &Vec<Value> {
 
 fn row<'a>(results: &'a Value, mode: &str, setting: &str) -> &'a Value {
     let mut rows = rows(results).iter();
-    let found = rows.find(|row| row["mode"] == mode && row["setting"] == setting);
-    found.unwrap_or_else(|| panic!("no row of {mode}, {setting}"))
+    let row = rows.find(|row| row["mode"] == mode && row["setting"] == setting);
+    row.unwrap_or_else(|| panic!("no row of {mode}, {setting}"))
 }
 
 /// Everything but `--modes` and what the test is about; small and quick.
@@ -42,8 +42,8 @@ fn every_setting_is_judged_timed_and_pictured() {
             assert_eq!(row["times_ms"]["repeats"], 2, "{name}");
             for clock in ["frame", "render"] {
                 let spread = &row["times_ms"][clock];
-                let [least, median] = ["min", "median"].map(|key| spread[key].as_f64().unwrap());
-                assert!(0.0 < least && least <= median, "{name}: {spread}");
+                let [min, median] = ["min", "median"].map(|key| spread[key].as_f64().unwrap());
+                assert!(0.0 < min && min <= median, "{name}: {spread}");
                 assert!(spread["mad"].as_f64().unwrap() >= 0.0, "{name}");
             }
             let processor = &row["times_ms"]["processor"];
@@ -110,15 +110,15 @@ fn the_figures_are_those_of_the_pictures() {
         let picture = pixels(&place.path(&format!("out/{file}")));
         let differences = truth.iter().zip(&picture);
         let differences = differences.flat_map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()));
-        let most = differences.fold(0.0, f64::max);
+        let max = differences.fold(0.0, f64::max);
         // Both pictures are rounded to 255 levels.
-        let told = row["error"]["color"]["max"].as_f64().unwrap();
+        let reported = row["error"]["color"]["max"].as_f64().unwrap();
         assert!(
-            (told - most).abs() <= 1.01 / 255.0,
-            "{}: {told} {most}",
+            (reported - max).abs() <= 1.01 / 255.0,
+            "{}: {reported} {max}",
             row["setting"]
         );
-        wrong += usize::from(most > 2.0 / 255.0);
+        wrong += usize::from(max > 2.0 / 255.0);
     }
     assert!(wrong > 0, "no setting was wrong: nothing was tested");
 }
@@ -131,22 +131,22 @@ fn the_reference_is_computed_once() {
     let place = Place::with_ball();
     let line = format!("{SMALL} --modes iso {device}");
     place.done(&line);
-    let kept = || fs::read_dir(place.path("cache")).unwrap().count();
-    let told = || {
+    let cached = || fs::read_dir(place.path("cache")).unwrap().count();
+    let is_reported = || {
         let page = fs::read_to_string(place.path("out/report.html")).unwrap();
-        page.contains("kept from an earlier comparison")
+        page.contains("cached by an earlier comparison")
     };
     let figures = place.json("out/results.json");
-    assert_eq!((kept(), told()), (1, false));
+    assert_eq!((cached(), is_reported()), (1, false));
     place.done(&line);
-    assert_eq!((kept(), told()), (1, true));
+    assert_eq!((cached(), is_reported()), (1, true));
     let again = place.json("out/results.json");
     for (a, b) in rows(&figures).iter().zip(rows(&again)) {
         assert_eq!(a["error"], b["error"], "{}", a["setting"]);
         assert_eq!(a["counts"], b["counts"], "{}", a["setting"]);
     }
     place.done(&format!("{line} --azimuth 10"));
-    assert_eq!((kept(), told()), (2, false));
+    assert_eq!((cached(), is_reported()), (2, false));
 }
 
 #[test]

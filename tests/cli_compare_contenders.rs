@@ -368,8 +368,8 @@ fn a_figure_has_one_unit_in_finding_and_table() {
         ));
         let results = place.json("out/results.json");
         let finding = results["findings"][0].as_str().unwrap();
-        let told = finding.rsplit("coarse (").next().unwrap();
-        let told = told.trim_end_matches(')').rsplit(", ").next().unwrap();
+        let reported = finding.rsplit("coarse (").next().unwrap();
+        let reported = reported.trim_end_matches(')').rsplit(", ").next().unwrap();
         let page = fs::read_to_string(place.path("out/report.html")).unwrap();
         let table = page.split("class=\"sortable\"").nth(1).unwrap();
         let cells = |of: &str, tag: &str| -> Vec<String> {
@@ -390,9 +390,9 @@ fn a_figure_has_one_unit_in_finding_and_table() {
             text.parse::<f64>()
                 .unwrap_or_else(|_| panic!("{text}: {finding}"))
         };
-        let (told, shown) = (number(told), number(shown));
+        let (reported, shown) = (number(reported), number(shown));
         assert!(
-            told > 0.0 && (told - shown).abs() <= 0.01 * told,
+            reported > 0.0 && (reported - shown).abs() <= 0.01 * reported,
             "{mode}: {finding}: {shown}"
         );
     }

@@ -60,7 +60,7 @@ fn moved(frame: &Frame) -> [Frame; 4] {
     [1, row, all - 1, all - row].map(rotated)
 }
 
-/// Every kind of picture from every kind of camera, lit in every way.
+/// Every kind of picture from every kind of camera, under every light.
 fn scenes(volume: &Volume) -> Vec<Scene> {
     let knot = |value, [r, g, b]: [f64; 3], opacity| Knot {
         value,

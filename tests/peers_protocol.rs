@@ -1,4 +1,4 @@
-//! Peers: what one is told, and what it may answer. The peers here are shell scripts.
+//! Peers: what one is sent, and what it may answer. The peers here are shell scripts.
 #![cfg(unix)]
 
 mod common;
@@ -65,7 +65,7 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     let grey = srgb_from_linear(0.5 + 0.5 * 0.2) as f32;
     assert_eq!(*display, [[1.0; 4], [grey, grey, grey, 1.0]]);
 
-    // It is judged as any picture is.
+    // It is evaluated as any picture is.
     let mut truth = picture.frame.clone();
     assert_eq!(color_error(&truth, &picture.frame).unwrap().max, 0.0);
     truth.display.as_mut().unwrap()[1] = [grey - 0.25; 4];

@@ -406,14 +406,14 @@ fn it_is_dark_where_the_reader_s_screen_is() {
 #[test]
 fn every_axis_names_marks_that_stand_apart() {
     let Some(chromium) = chromium() else { return };
-    // Short stretches from everywhere in a decade, of small and large figures, and long ones.
-    let stretches = (0..10).flat_map(|n| {
+    // Short ranges from everywhere in a decade, of small and large figures, and long ones.
+    let ranges = (0..10).flat_map(|n| {
         let low = 10_f64.powf(f64::from(n) / 10.0);
         [(1e-4, 1.0), (1e-2, 1.4), (1.0, 1.0), (1.0, 3.0), (1e4, 2.0)]
             .map(|(size, over)| (low * size, low * size * over))
     });
     let long = [1e1, 1e2, 1e3, 1e6, 1e15].map(|over| (0.003, 0.003 * over));
-    let scatters = stretches.chain(long).map(|(low, high)| Scatter {
+    let scatters = ranges.chain(long).map(|(low, high)| Scatter {
         title: format!("{low} {high}"),
         points: vec![
             point("a", "g", low, low, true),

@@ -92,7 +92,7 @@ fn task<'a>(
     }
 }
 
-/// Of small pictures a large share is asked of the reference, of the larger ones less than a third.
+/// Of small pictures a large share is cast by the reference, of the larger ones less than a third.
 const SCENES: [(&str, &str); 5] = [
     ("mode = 'iso'\niso = '50%'\nsize = [200, 150]", "rmse:0.01"),
     ("mode = 'iso'\niso = '50%'\nsize = 96", "depth:0.05vox"),
@@ -126,7 +126,7 @@ fn the_chosen_setting_keeps_the_bound_and_coarse_ones_do_not() {
         };
         let of_chosen = error(&mut renderer, &choice.resolved.options);
         assert!(bound.is_met_by(of_chosen), "{bound}: {of_chosen}");
-        // The control: the grid's coarsest setting is judged beyond the bound, and is.
+        // The control: the grid's coarsest setting is found beyond the bound, and is.
         let coarsest = &choice.tried[0];
         assert!(!bound.is_met_by(coarsest.error), "{bound}");
         let options = coarsest.setting.over(&options).checked().unwrap();
@@ -233,14 +233,14 @@ fn what_was_chosen_is_told_and_the_stored_scene_gives_the_same_picture() {
         "{said}"
     );
     let stats = place.json("a.json");
-    let told = &stats["max_error"];
+    let stats_of_bound = &stats["max_error"];
     assert_eq!(
-        (&told["metric"], &told["met"]),
+        (&stats_of_bound["metric"], &stats_of_bound["met"]),
         (&"value".into(), &true.into())
     );
-    assert!(told["upper"].as_f64().unwrap() <= 0.01);
-    let chosen = told["chosen"].as_str().unwrap();
-    let tried = told["tried"].as_array().unwrap();
+    assert!(stats_of_bound["upper"].as_f64().unwrap() <= 0.01);
+    let chosen = stats_of_bound["chosen"].as_str().unwrap();
+    let tried = stats_of_bound["tried"].as_array().unwrap();
     let all = candidates(Mode::Mip, 0.01).unwrap().concat();
     assert!((1..=all.len()).contains(&tried.len()), "{}", tried.len());
     assert!(tried.iter().any(|one| one["setting"] == chosen), "{said}");

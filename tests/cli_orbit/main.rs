@@ -1,5 +1,5 @@
 //! `angioray orbit`: every frame is what `render` makes, in pictures, animations and shards; stopped
-//! and gone on with.
+//! and resumed.
 
 #[path = "../cli_place/mod.rs"]
 mod cli_place;

@@ -1,4 +1,4 @@
-//! Stopped by signals, and gone on with.
+//! Stopped by signals, and resumed.
 #![cfg(unix)]
 
 use std::fs;

@@ -2,4 +2,5 @@
 
 mod circles;
 mod functions;
+mod layers;
 mod sources;

@@ -8,5 +8,5 @@ cd "$(dirname "$0")/.."
 if [ -z "${TMPDIR:-}" ] && [ -w /dev/shm ]; then
     export TMPDIR=/dev/shm
 fi
-ANGIORAY_FUZZ_CASES="${1:-1000000}" exec cargo test --locked --test reader_robustness -- \
-    --exact --nocapture campaign::changed_headers_are_read_or_refused_and_nothing_else
+ANGIORAY_FUZZ_CASES="${1:-1000000}" exec cargo test --locked --test readers -- \
+    --exact --nocapture reader_robustness::campaign::changed_headers_are_read_or_refused_and_nothing_else

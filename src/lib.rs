@@ -6,28 +6,23 @@
 
 pub mod abrupt;
 pub mod batch;
-pub mod bench;
 pub mod cli;
-pub mod compare;
 pub mod crash;
 pub mod error;
 pub mod extent;
 pub mod frame;
 pub mod gpu;
-pub mod hardcases;
 pub mod input;
 pub mod kept;
-pub mod measure;
+pub mod lab;
 pub mod memory;
 pub mod octree;
 pub mod output;
 pub mod progress;
 pub mod reference;
 pub mod render;
-pub mod report;
 pub mod scene;
 pub mod stop;
-pub mod tolerance;
 pub mod volume;
 
 pub use error::{Error, Result};

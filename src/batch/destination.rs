@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::frame::{self, Animation, Encoding, Frame, Reel, is_whole};
 
-use super::{FrameNames, KeptFrames};
+use super::{FinishedFrames, FrameNames};
 
 /// A frame on its way to its file.
 pub struct Shot<T> {
@@ -17,11 +17,11 @@ pub struct Shot<T> {
     pub frame: Frame,
     /// Its own, as the text that pictures carry.
     pub scene: String,
-    /// What is to be remembered of it.
+    /// What is to be recorded of it.
     pub about: T,
 }
 
-/// What is remembered of a frame that has been written.
+/// The record of a frame that has been written.
 pub struct Written<T> {
     /// Which one of the path it is.
     pub index: u32,
@@ -42,13 +42,13 @@ pub enum Destination {
     Animation {
         path: PathBuf,
         animation: Animation,
-        /// Where they are until the file is whole; nowhere where the file is a device or a pipe.
-        kept: Option<KeptFrames>,
+        /// Where they are until the file is whole; `None` where the file is a device or a pipe.
+        finished: Option<FinishedFrames>,
     },
 }
 
 /// What a picture depends on beside its scene. Pictures carry it, so that no frame of another volume,
-/// device or program is taken for one that is there already.
+/// device or program is taken for a finished one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
     /// The program's.
@@ -73,7 +73,7 @@ impl Provenance {
 }
 
 impl Destination {
-    /// That a frame of this size fits.
+    /// Checks that a frame of this size fits.
     ///
     /// # Errors
     /// As [`Encoding::check_size`].
@@ -84,15 +84,15 @@ impl Destination {
         }
     }
 
-    /// Whether what is there can be told from what is missing.
-    pub fn tells_what_is_there(&self) -> bool {
+    /// Whether finished frames can be recognised, so that a later run makes only the missing ones.
+    pub fn recognises_finished(&self) -> bool {
         match self {
             Self::Pictures { encoding, .. } => encoding.format.carries_metadata(),
-            Self::Animation { kept, .. } => kept.is_some(),
+            Self::Animation { finished, .. } => finished.is_some(),
         }
     }
 
-    /// Makes the folder of a sequence, or of an animation's kept frames, where there is none.
+    /// Makes the folder of a sequence, or of an animation's finished frames, where there is none.
     ///
     /// # Errors
     /// It cannot be made.
@@ -103,30 +103,30 @@ impl Destination {
                     .map_err(|cause| Error::writing(names.folder(), "make the folder", &cause))
             }
             Self::Animation {
-                kept: Some(kept), ..
-            } => kept.make_folder(),
+                finished: Some(finished),
+                ..
+            } => finished.make_folder(),
             _ => Ok(()),
         }
     }
 
-    /// Whether a frame is there already: whole, of this scene and this provenance.
+    /// Whether a frame is finished already: whole, of this scene and this provenance.
     pub fn holds(&self, index: u32, size: ImageSize, scene: &str, from: &Provenance) -> bool {
         match self {
             Self::Pictures { names, encoding } => {
                 is_whole(&names.path(index), size, encoding, &from.metadata(scene))
             }
-            Self::Animation { kept, .. } => {
-                (kept.as_ref()).is_some_and(|kept| kept.holds(index, size, &from.metadata(scene)))
-            }
+            Self::Animation { finished, .. } => (finished.as_ref())
+                .is_some_and(|finished| finished.holds(index, size, &from.metadata(scene))),
         }
     }
 
     /// Writes frames as they come, every picture whole or not at all, an animation likewise: of the
-    /// `reel`'s frames it takes those that do not come from where they are kept. A picture carries its
+    /// `reel`'s frames, those that do not come are read where they were saved. A picture carries its
     /// own scene and `from`, an animation `scene` and `from`.
     ///
     /// # Errors
-    /// The first error among `shots`, the pictures before it being written, or kept beside an animation;
+    /// The first error among `shots`, the pictures before it being written, or saved beside an animation;
     /// what cannot be written.
     pub fn write<T>(
         &self,
@@ -158,10 +158,10 @@ impl Destination {
             Self::Animation {
                 path,
                 animation,
-                kept,
+                finished,
             } => {
                 let mut joined = Joined {
-                    kept: kept.as_ref(),
+                    finished: finished.as_ref(),
                     from,
                     shots: shots.peekable(),
                     written: &mut written,
@@ -170,8 +170,8 @@ impl Destination {
                 let mut frames = (0..reel.frames).map_while(|index| joined.frame(index));
                 animation.write(path, reel, &from.metadata(scene), &mut frames)?;
                 joined.settle();
-                if let Some(kept) = kept {
-                    kept.remove();
+                if let Some(finished) = finished {
+                    finished.remove();
                 }
             }
         }
@@ -179,10 +179,10 @@ impl Destination {
     }
 }
 
-/// All frames of an animation in order: those that come, which are kept on their way, and between them
-/// those that are kept already.
+/// All frames of an animation in order: those that come, which are saved on their way, and between them
+/// those that were finished before.
 struct Joined<'a, T, I: Iterator<Item = Result<Shot<T>>>> {
-    kept: Option<&'a KeptFrames>,
+    finished: Option<&'a FinishedFrames>,
     from: &'a Provenance,
     shots: Peekable<I>,
     written: &'a mut Vec<Written<T>>,
@@ -191,20 +191,20 @@ struct Joined<'a, T, I: Iterator<Item = Result<Shot<T>>>> {
 }
 
 impl<T, I: Iterator<Item = Result<Shot<T>>>> Joined<'_, T, I> {
-    /// `None`: it neither comes nor is kept.
+    /// The frame; `None`: it neither comes nor was finished before.
     fn frame(&mut self, index: u32) -> Option<Result<Frame>> {
         self.settle();
         let comes = |shot: &Result<Shot<T>>| !matches!(shot, Ok(shot) if shot.index != index);
         match self.shots.next_if(comes) {
             Some(shot) => Some(shot.and_then(|shot| self.take(shot))),
-            None => Some(self.kept?.read(index)),
+            None => Some(self.finished?.read(index)),
         }
     }
 
     fn take(&mut self, shot: Shot<T>) -> Result<Frame> {
         self.handed = Some(Instant::now());
-        if let Some(kept) = self.kept {
-            kept.keep(shot.index, &shot.frame, &self.from.metadata(&shot.scene))?;
+        if let Some(finished) = self.finished {
+            finished.save(shot.index, &shot.frame, &self.from.metadata(&shot.scene))?;
         }
         self.written.push(Written {
             index: shot.index,

@@ -1,14 +1,14 @@
-//! Frame after frame: which there are, which of them are this process's, which are made already,
+//! Sequences of frames: which there are, which of them are this process's, which are finished already,
 //! and where they go.
 
-mod beside;
 mod destination;
-mod kept_frames;
+mod finished_frames;
 mod names;
+mod pipelined;
 mod shard;
 
-pub use beside::beside;
 pub use destination::{Destination, Provenance, Shot, Written};
-pub use kept_frames::KeptFrames;
+pub use finished_frames::FinishedFrames;
 pub use names::FrameNames;
+pub use pipelined::pipelined;
 pub use shard::{Shard, ShardChoice};

@@ -16,7 +16,7 @@ pub struct FrameNames {
 }
 
 impl FrameNames {
-    const MOST_DIGITS: usize = 20;
+    const MAX_DIGITS: usize = 20;
 
     /// Reads a pattern.
     ///
@@ -55,7 +55,7 @@ impl FrameNames {
                 width if width.starts_with('0') => width.parse().ok(),
                 _ => return Err(wrong("a number's width is written with a zero before it")),
             };
-            match width.filter(|&width| width <= Self::MOST_DIGITS) {
+            match width.filter(|&width| width <= Self::MAX_DIGITS) {
                 Some(width) => places.push(width),
                 None => return Err(wrong("no frame's number has so many digits")),
             }

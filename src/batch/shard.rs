@@ -62,11 +62,11 @@ impl fmt::Display for Shard {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
     Given(Shard),
-    /// As the program that started this one says.
+    /// As the environment says, which the program that started this one set.
     Auto,
 }
 
-/// Variables that tell a process which of how many processes of its job it is, index and count, the
+/// Variables that give a process its index in its job and the number of processes, index and count, the
 /// nearest starter first. Slurm's count is that of srun's step: a batch script itself has a
 /// `SLURM_PROCID` too, 0 of however many tasks the job may start.
 const RANKS: [(&str, &str); 3] = [
@@ -82,7 +82,7 @@ const ARRAY_STEP: &str = "SLURM_ARRAY_TASK_STEP";
 const ARRAY_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
 
 impl ShardChoice {
-    /// The shard and, where it was found in the environment, the variables that told it: process p
+    /// The shard and, where it was found in the environment, the variables that gave it: process p
     /// of t in task a of an array of n is shard a·t + p of n·t. `variable` looks one up.
     ///
     /// # Errors
@@ -98,17 +98,17 @@ impl ShardChoice {
             None => Ok(otherwise),
             Some(text) => text.trim().parse().map_err(|_| {
                 Error::usage(format!(
-                    "shard auto: {name} is '{text}', which is no number"
+                    "shard auto: {name} is '{text}', which is not a number"
                 ))
             }),
         };
         let is_set = |name: &str| variable(name).is_some();
-        let mut told = None;
+        let mut given = None;
         if is_set(ARRAY_TASK) && is_set(ARRAY_COUNT) {
             let (first, step) = (number(ARRAY_FIRST, 0)?, number(ARRAY_STEP, 1)?.max(1));
             let (task, count) = (number(ARRAY_TASK, 0)?, number(ARRAY_COUNT, 0)?);
             let shard = Shard::new(task.saturating_sub(first) / step, count);
-            told = Some((shard.map_err(|e| e.at(ARRAY_TASK))?, ARRAY_TASK.to_owned()));
+            given = Some((shard.map_err(|e| e.at(ARRAY_TASK))?, ARRAY_TASK.to_owned()));
         }
         let rank = RANKS
             .into_iter()
@@ -116,12 +116,12 @@ impl ShardChoice {
         if let Some((index_name, count_name)) = rank {
             let shard = Shard::new(number(index_name, 0)?, number(count_name, 0)?);
             let rank = shard.map_err(|e| e.at(index_name))?;
-            told = Some(match told {
+            given = Some(match given {
                 Some((task, by)) => (rank.within(task)?, format!("{by} and {index_name}")),
                 None => (rank, index_name.to_owned()),
             });
         }
-        if let Some((shard, by)) = told {
+        if let Some((shard, by)) = given {
             return Ok((shard, Some(by)));
         }
         let ranks = RANKS.map(|(index, count)| format!("{index} and {count}"));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn the_environment_tells_the_shard() {
+    fn the_environment_gives_the_shard() {
         let auto = |variables: &[(&str, &str)]| {
             let variables: Vec<(String, String)> = variables
                 .iter()
@@ -192,11 +192,11 @@ mod tests {
             ("SLURM_PROCID", "0"),
             ("SLURM_NTASKS", "4"),
         ];
-        let told = |variables: &[_]| {
+        let given = |variables: &[_]| {
             let (shard, by) = auto(variables).unwrap();
             (shard, by.unwrap())
         };
-        assert_eq!(told(&array), (shard(3, 5), "SLURM_ARRAY_TASK_ID".into()));
+        assert_eq!(given(&array), (shard(3, 5), "SLURM_ARRAY_TASK_ID".into()));
         // A batch script that srun did not start is no process of several.
         assert_eq!(auto(&array[4..]).unwrap_err().exit_code(), 2);
         let step = [
@@ -204,11 +204,11 @@ mod tests {
             ("SLURM_NTASKS", "8"),
             ("SLURM_STEP_NUM_TASKS", "4"),
         ];
-        assert_eq!(told(&step), (shard(2, 4), "SLURM_PROCID".into()));
+        assert_eq!(given(&step), (shard(2, 4), "SLURM_PROCID".into()));
         // Steps of an array's tasks: every share once.
         let both = [&array[..4], &step[..]].concat();
         let by = "SLURM_ARRAY_TASK_ID and SLURM_PROCID";
-        assert_eq!(told(&both), (shard(14, 20), by.into()));
+        assert_eq!(given(&both), (shard(14, 20), by.into()));
         let mut all: Vec<u32> = (0..5)
             .flat_map(|task| (0..4).map(move |rank| (task, rank)))
             .map(|(task, rank)| {

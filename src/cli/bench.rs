@@ -4,9 +4,11 @@ use std::path::Path;
 
 use clap::builder::StyledStr;
 
-use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceInfo;
+use crate::lab::bench::{
+    Bench, Dataset, EXPERIMENTS, Experiment, Outcome, Preset, Protocol, Store,
+};
 use crate::progress::Progress;
 use crate::scene::options::concise;
 use crate::scene::options::group::group;
@@ -51,7 +53,7 @@ group! {
         #[serde(deserialize_with = "one_or_more")]
         volumes: Vec<FilePath>,
 
-        /// The value at which the volumes are looked at: a number, a share of the value range such as
+        /// The iso value of the volumes: a number, a share of the value range such as
         /// 50%, a percentile of the voxels such as p99.5, or otsu [default: suggested by each one's
         /// histogram]
         #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
@@ -76,14 +78,14 @@ group! {
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         frames: Count,
 
-        /// Another renderer to race in the experiment speed, as a command line that speaks the protocol
+        /// Another renderer to time in the experiment speed, as a command line that speaks the protocol
         /// of scripts/peers/README.md in angioray's source
         #[arg(long, value_name = "COMMAND")]
         peer: String,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
-        /// pictures; made where there is none. It fills as the work goes on: the same command goes
-        /// on where it was stopped
+        /// pictures; made where there is none. It fills as the work proceeds: the same command resumes
+        /// a run that was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
@@ -104,7 +106,7 @@ group! {
     }
 }
 
-/// The experiments, how a run is gone on with, examples.
+/// The experiments, how a run is resumed, examples.
 fn after_help() -> StyledStr {
     let mut text = String::from("Experiments:");
     for experiment in EXPERIMENTS {
@@ -113,8 +115,8 @@ fn after_help() -> StyledStr {
     text.push_str(
         "
 
-A run with --output that is stopped, by Ctrl-C or SIGTERM, ends with exit code 75; the same command goes
-on with it.
+A run with --output that is stopped, by Ctrl-C or SIGTERM, ends with exit code 75; the same command
+resumes it.
 
 Example:
   angioray bench vessels
@@ -130,79 +132,14 @@ Example:
 
 impl BenchArguments {
     pub fn run(self) -> Result<()> {
-        let file = self.scene.open()?;
-        let mut of_file = file.group::<BenchOptions>()?;
-        of_file.output = of_file.output.map(|path| file.named_here(path));
-        let named_here = |volumes: Vec<FilePath>| {
-            let volumes = volumes.into_iter();
-            volumes.map(|volume| file.named_here(volume)).collect()
-        };
-        of_file.volumes = of_file.volumes.map(named_here);
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
-        let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
-        if is_on(self.bench.quick) || is_on(self.bench.full) {
-            // Either flag says all that a file says by both keys.
-            (of_file.quick, of_file.full) = (None, None);
-        }
-        let options = self.bench.over(of_file);
-
-        let Some(name) = &options.experiment else {
-            let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
-            return Err(Error::usage("no experiment was named")
-                .hint(format!("write one of {}", names.join(", "))));
-        };
-        let experiment = Experiment::named(name)?;
-        let volumes = options.volumes.unwrap_or_default();
-        if !volumes.is_empty() && !experiment.takes_volumes {
-            return Err(Error::usage(format!(
-                "the experiment '{name}' takes no volumes: it makes its own"
-            )));
-        }
-        let aims = [
-            ("--rays", options.rays.is_some()),
-            ("--seed", options.seed.is_some()),
-        ];
-        if let Some((flag, _)) = (aims.iter()).find(|(_, given)| *given && !experiment.counts_rays)
-        {
-            return Err(Error::usage(format!(
-                "'{flag}' has no effect in the experiment '{name}'"
-            )));
-        }
-        if options.protocol.is_some() && !experiment.times_frames {
-            return Err(Error::usage(format!(
-                "'--protocol' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
-            )));
-        }
-        let races = [
-            ("--frames", options.frames.is_some()),
-            ("--peer", options.peer.is_some()),
-        ];
-        if let Some((flag, _)) = races.iter().find(|(_, given)| *given && !experiment.races) {
-            return Err(Error::usage(format!(
-                "'{flag}' has no effect in the experiment '{name}'"
-            )));
-        }
-        if options.iso.is_some() && volumes.is_empty() {
-            return Err(Error::usage("'--iso' has no effect without a volume")
-                .hint("name the volumes that are looked at there"));
-        }
-        if is_on(options.restart) && options.output.is_none() {
-            return Err(Error::usage("'--restart' has no effect without '--output'"));
-        }
-        let effort = match (is_on(options.quick), is_on(options.full)) {
-            (true, true) => {
-                return Err(Error::usage("'quick' and 'full' do not go together")
-                    .hint("choose one of them"));
-            }
-            (true, false) => Effort::Quick,
-            (false, true) => Effort::Full,
-            (false, false) => Effort::default(),
-        };
+        let (options, device) = self.merged()?;
+        let experiment = options.experiment()?;
+        options.check(experiment)?;
+        let preset = options.preset()?;
         if options.output.is_some() {
             stopping::between_parts("unit of work", ErrorKind::Stopped)?;
         } else {
-            stopping::at_once("without --output nothing is kept")?;
+            stopping::at_once("without --output nothing is saved")?;
         }
         let Engine::Device {
             device,
@@ -210,55 +147,33 @@ impl BenchArguments {
         } = Engine::open(&device)?
         else {
             return Err(Error::usage(
-                "the reference cannot be measured: it is what others are held against",
+                "the reference cannot be measured: it is what others are compared with",
             )
             .hint("choose an OpenCL device: 'angioray devices' lists them"));
         };
 
         let bars = Bars::new();
-        let mut specimens: Vec<Specimen> = Vec::new();
-        for FilePath(path) in &volumes {
-            let mut specimen = specimen(path, options.iso, device.info(), &bars)?;
-            specimen.check()?;
-            specimen.name = free_name(&specimen.name, |name| {
-                specimens.iter().any(|other| other.name == name)
-            });
-            specimens.push(specimen);
-        }
+        let datasets = options.datasets(device.info(), &bars)?;
         let mut bench = Bench {
             experiment,
             command: command_line(),
             device: &device,
             options: use_of_device,
-            effort,
+            preset,
             protocol: options.protocol,
-            specimens,
+            datasets,
             rays: options.rays.map(Count::get),
             seed: options.seed.map(|Seed(seed)| seed),
             frames: options.frames.map(Count::get),
-            peer: options.peer,
+            peer: options.peer.clone(),
             progress: &bars,
             store: None,
         };
-        if let Some(FilePath(folder)) = &options.output {
-            let store = Store::in_folder(folder, &bench.run()?, is_on(options.restart))?;
-            if store.known_units() > 0 {
-                note(format_args!(
-                    "going on with what was measured before: {} units of work",
-                    store.known_units()
-                ));
-            }
-            bench.store = Some(store);
-        }
+        bench.store = options.store(&bench)?;
+        let name = options.experiment.as_deref().unwrap_or(experiment.name);
         message(format_args!("bench {name} on {}", device.info().name));
         let outcome = (experiment.run)(&bench)?;
-        lines_to_stdout(|out| {
-            let table = outcome.table.markdown();
-            table.iter().try_for_each(|line| out.line(line))?;
-            out.line("")?;
-            let mut findings = outcome.findings.iter();
-            findings.try_for_each(|sentence| out.line(format_args!("- {sentence}")))
-        })?;
+        print_outcome(&outcome)?;
         if let Some(store) = &bench.store {
             for path in store.finish(&bench, &outcome)? {
                 message(format_args!("wrote {}", path.display()));
@@ -269,15 +184,145 @@ impl BenchArguments {
             None => Ok(()),
         }
     }
+
+    /// Merges the flags with the scene file.
+    fn merged(self) -> Result<(BenchOptions, DeviceOptions)> {
+        let file = self.scene.open()?;
+        let mut of_file = file.group::<BenchOptions>()?;
+        of_file.output = of_file.output.map(|path| file.named_here(path));
+        let named_here = |volumes: Vec<FilePath>| {
+            let volumes = volumes.into_iter();
+            volumes.map(|volume| file.named_here(volume)).collect()
+        };
+        of_file.volumes = of_file.volumes.map(named_here);
+        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over(device);
+        if is_on(self.bench.quick) || is_on(self.bench.full) {
+            // Either flag says all that a file says by both keys.
+            (of_file.quick, of_file.full) = (None, None);
+        }
+        Ok((self.bench.over(of_file), device))
+    }
 }
 
-/// A volume file, looked at where the user says or the histogram suggests.
-fn specimen(
+fn is_on(switch: Option<Switch>) -> bool {
+    switch.is_some_and(Switch::is_on)
+}
+
+impl BenchOptions {
+    fn experiment(&self) -> Result<&'static Experiment> {
+        let Some(name) = &self.experiment else {
+            let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
+            return Err(Error::usage("no experiment was named")
+                .hint(format!("write one of {}", names.join(", "))));
+        };
+        Experiment::named(name)
+    }
+
+    fn volumes(&self) -> &[FilePath] {
+        self.volumes.as_deref().unwrap_or_default()
+    }
+
+    /// Checks that every option has an effect in the experiment.
+    fn check(&self, experiment: &Experiment) -> Result<()> {
+        let name = self.experiment.as_deref().unwrap_or(experiment.name);
+        if !self.volumes().is_empty() && !experiment.takes_volumes {
+            return Err(Error::usage(format!(
+                "the experiment '{name}' takes no volumes: it makes its own"
+            )));
+        }
+        let without_effect = |flag: &str, why: &str| {
+            Err(Error::usage(format!(
+                "'{flag}' has no effect in the experiment '{name}'{why}"
+            )))
+        };
+        const NO_FRAMES: &str = ", which times no frames, or moves the camera in its own way";
+        for (flag, is_given, has_effect, why) in [
+            ("--rays", self.rays.is_some(), experiment.counts_rays, ""),
+            ("--seed", self.seed.is_some(), experiment.counts_rays, ""),
+            (
+                "--protocol",
+                self.protocol.is_some(),
+                experiment.times_frames,
+                NO_FRAMES,
+            ),
+            ("--frames", self.frames.is_some(), experiment.takes_peer, ""),
+            ("--peer", self.peer.is_some(), experiment.takes_peer, ""),
+        ] {
+            if is_given && !has_effect {
+                return without_effect(flag, why);
+            }
+        }
+        if self.iso.is_some() && self.volumes().is_empty() {
+            return Err(Error::usage("'--iso' has no effect without a volume")
+                .hint("name the volumes that it is meant for"));
+        }
+        if is_on(self.restart) && self.output.is_none() {
+            return Err(Error::usage("'--restart' has no effect without '--output'"));
+        }
+        Ok(())
+    }
+
+    fn preset(&self) -> Result<Preset> {
+        match (is_on(self.quick), is_on(self.full)) {
+            (true, true) => {
+                Err(Error::usage("'quick' and 'full' do not go together")
+                    .hint("choose one of them"))
+            }
+            (true, false) => Ok(Preset::Quick),
+            (false, true) => Ok(Preset::Full),
+            (false, false) => Ok(Preset::default()),
+        }
+    }
+
+    /// The volumes that are named, each under a name of its own.
+    fn datasets(&self, device: &DeviceInfo, progress: &dyn Progress) -> Result<Vec<Dataset>> {
+        let mut datasets: Vec<Dataset> = Vec::new();
+        for FilePath(path) in self.volumes() {
+            let mut dataset = dataset(path, self.iso, device, progress)?;
+            dataset.check()?;
+            dataset.name = free_name(&dataset.name, |name| {
+                datasets.iter().any(|other| other.name == name)
+            });
+            datasets.push(dataset);
+        }
+        Ok(datasets)
+    }
+
+    /// The folder of results, where one is named.
+    fn store(&self, bench: &Bench) -> Result<Option<Store>> {
+        let Some(FilePath(folder)) = &self.output else {
+            return Ok(None);
+        };
+        let store = Store::in_folder(folder, &bench.run()?, is_on(self.restart))?;
+        if store.known_units() > 0 {
+            note(format_args!(
+                "resumed: {} units of work were measured before",
+                store.known_units()
+            ));
+        }
+        Ok(Some(store))
+    }
+}
+
+/// Prints the table and the findings.
+fn print_outcome(outcome: &Outcome) -> Result<()> {
+    lines_to_stdout(|out| {
+        let table = outcome.table.markdown();
+        table.iter().try_for_each(|line| out.line(line))?;
+        out.line("")?;
+        let mut findings = outcome.findings.iter();
+        findings.try_for_each(|sentence| out.line(format_args!("- {sentence}")))
+    })
+}
+
+/// A volume file, its iso value the user's or the one that the histogram suggests.
+fn dataset(
     path: &Path,
     iso: Option<Threshold>,
     device: &DeviceInfo,
     progress: &dyn Progress,
-) -> Result<Specimen> {
+) -> Result<Dataset> {
     let source = Source::of(&VolumeOptions {
         volume: Some(FilePath(path.to_owned())),
         ..VolumeOptions::default()
@@ -285,28 +330,28 @@ fn specimen(
     let loaded = source.load(Some(device), progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let percentile = iso.and_then(Threshold::percentile);
-    let told = match (percentile, iso) {
+    let given = match (percentile, iso) {
         (Some(percent), _) => percentiles(&loaded.volume, &[percent]).first().copied(),
         (None, iso) => iso.map(|iso| iso.resolve(&loaded.subject)).transpose()?,
     };
     let range = loaded.volume.range();
-    if let Some(told) = told
-        && !(range.min..=range.max).contains(&told)
+    if let Some(given) = given
+        && !(range.min..=range.max).contains(&given)
     {
         return Err(Error::usage(format!(
             "'--iso {}' lies outside the values of {}, {} to {}: there is no surface",
-            concise(told),
+            concise(given),
             path.display(),
             concise(range.min),
             concise(range.max)
         ))
         .hint("name a value between them, or a share of the value range such as 50%"));
     }
-    let specimen = Specimen {
-        // Without what tells the format.
+    let dataset = Dataset {
+        // Without the extension.
         name: name.split('.').next().unwrap_or_default().to_owned(),
         volume: loaded.volume,
-        iso: told.unwrap_or(loaded.subject.suggested_iso),
+        iso: given.unwrap_or(loaded.subject.suggested_iso),
     };
     if !matches!(iso, Some(Threshold::Value(_))) {
         let by = match iso {
@@ -315,11 +360,11 @@ fn specimen(
         };
         note(format_args!(
             "{}: iso = {}, {by}",
-            specimen.name,
-            concise(specimen.iso)
+            dataset.name,
+            concise(dataset.iso)
         ));
     }
-    Ok(specimen)
+    Ok(dataset)
 }
 
 /// The name, numbered from 2 on where it is taken.

@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::hardcases::{HardScene, scenes};
+use crate::lab::hardcases::{HardCase, HardScene};
 use crate::output::write_atomically;
-use crate::volume::HardCase;
 
 use super::outputs;
 use super::terminal::{message, note};
@@ -40,7 +39,7 @@ impl PartialEq for Chosen {
 pub fn write(chosen: Chosen, output: &Path, gzip: bool, inputs: &[&Path]) -> Result<()> {
     let Chosen { case, member } = chosen;
     let made = case.volume(member)?;
-    let scenes = scenes(case, member, &made.volume);
+    let scenes = case.scenes(&made.volume);
     let files: Vec<PathBuf> = match &scenes[..] {
         [_] => vec![output.with_extension("toml")],
         several => several
@@ -58,7 +57,7 @@ pub fn write(chosen: Chosen, output: &Path, gzip: bool, inputs: &[&Path]) -> Res
         output.display(),
         made.volume.dims(),
         made.volume.voxels().voxel_type(),
-        case.truth
+        case.answer
     ));
     for (file, HardScene { toml, .. }) in files.iter().zip(&scenes) {
         write_atomically(file, |out| {

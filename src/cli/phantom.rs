@@ -2,21 +2,20 @@
 
 use std::ffi::OsStr;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
+use crate::lab::hardcases::HardCase;
 use crate::output::write_atomically;
 use crate::scene::options::group::{Keys, group};
 use crate::scene::options::plain::readable;
 use crate::scene::options::whole;
 use crate::scene::{FilePath, SpacingMm, Switch};
-use crate::volume::{
-    HardCase, PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd,
-};
+use crate::volume::{PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd};
 
 use super::hardcase::{self, Chosen};
 use super::outputs;
@@ -127,89 +126,118 @@ impl PhantomArguments {
             }
             _ => file.group()?,
         };
-        let asked = self.phantom.over(from_file);
+        let options = self.phantom.over(from_file);
         let shape = self.shape.over(shape);
 
-        let Some(kind) = asked.kind else {
+        let Some(kind) = options.kind else {
             let kinds = PhantomKind::ALL.map(PhantomKind::name).join(", ");
             return Err(Error::usage("no kind of phantom was named")
                 .hint(format!("write one of {kinds}, or hardcase:NAME")));
         };
-        let Some(FilePath(output)) = asked.output.clone() else {
+        let output = options.output_file()?;
+        let inputs: Vec<&Path> = self.scene.path().into_iter().collect();
+        outputs::check(&output, &inputs)?;
+        match kind {
+            Kind::Phantom(kind) => write_phantom(kind, &options, &shape, &output, &inputs),
+            Kind::Hard(chosen) => {
+                check_strays(&options, &shape)?;
+                hardcase::write(chosen, &output, options.is_gzipped(), &inputs)
+            }
+        }
+    }
+}
+
+impl PhantomOptions {
+    fn output_file(&self) -> Result<PathBuf> {
+        let Some(FilePath(output)) = self.output.clone() else {
             return Err(Error::usage("no file to write was named")
                 .hint("give it by '--output', or as 'output' in the scene file"));
         };
-        if !output
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("nrrd"))
-        {
-            return Err(Error::usage(format!(
-                "{}: phantoms are written as NRRD",
-                output.display()
-            ))
-            .hint("end the name in .nrrd"));
+        let extension = output.extension();
+        if extension.is_some_and(|e| e.eq_ignore_ascii_case("nrrd")) {
+            return Ok(output);
         }
-        let inputs: Vec<&Path> = self.scene.path().into_iter().collect();
-        outputs::check(&output, &inputs)?;
-        let gzip = asked.gzip.is_some_and(Switch::is_on);
-        let kind = match kind {
-            Kind::Phantom(kind) => kind,
-            Kind::Hard(chosen) => {
-                let given = asked.given().into_iter().chain(shape.given());
-                let mut strays = given.filter(|key| !["kind", "output", "gzip"].contains(&&**key));
-                return match strays.next() {
-                    Some(key) => Err(Error::usage(format!(
-                        "'{}' does not go with a hard case: its voxels are what makes it hard",
-                        key.replace("voxel-type", "type")
-                    ))),
-                    None => hardcase::write(chosen, &output, gzip, &inputs),
-                };
-            }
-        };
-        let tree_file = output.with_extension("tree.json");
-        if kind == PhantomKind::Vessels {
-            outputs::check(&tree_file, &inputs)?;
-        }
-        let dims = match asked.size {
+        Err(Error::usage(format!(
+            "{}: phantoms are written as NRRD",
+            output.display()
+        ))
+        .hint("end the name in .nrrd"))
+    }
+
+    fn is_gzipped(&self) -> bool {
+        self.gzip.is_some_and(Switch::is_on)
+    }
+
+    /// The phantom of a kind that these options and its shape's describe.
+    fn spec(&self, kind: PhantomKind, shape: &ShapeOptions) -> Result<PhantomSpec> {
+        let dims = match self.size {
             Some(GridSize(dims)) => dims,
             None => Dims::new([u64::from(kind.default_size()); 3])?,
         };
         let default = PhantomSpec::new(kind, dims);
-        let spec = PhantomSpec {
-            spacing_mm: asked
+        Ok(PhantomSpec {
+            spacing_mm: self
                 .spacing
                 .map_or(default.spacing_mm, |SpacingMm(each)| each.into()),
-            voxel_type: asked
+            voxel_type: self
                 .voxel_type
                 .map_or(default.voxel_type, |VoxelName(voxel_type)| voxel_type),
-            seed: asked.seed.map_or(default.seed, |Seed(seed)| seed),
+            seed: self.seed.map_or(default.seed, |Seed(seed)| seed),
             radius_mm: shape.radius,
             tip_radius_mm: shape.tip_radius,
             thickness_mm: shape.thickness,
             axis: shape.axis.map(|Axis(axis)| axis),
             sigma_mm: shape.sigma,
-            noise: asked.noise.unwrap_or(default.noise),
+            noise: self.noise.unwrap_or(default.noise),
             ..default
-        };
-        let made = phantom(&spec)?;
-        made.volume.notes().iter().for_each(note);
-        write_nrrd(&made.volume, &output, gzip)?;
-        message(format_args!(
-            "wrote {}: {dims} {}; {}",
-            output.display(),
-            spec.voxel_type,
-            made.truth
-        ));
-        if let Some(tree) = &made.tree {
-            write_tree(&tree_file, tree)?;
-            message(format_args!(
-                "wrote {}: {} vessel segments",
-                tree_file.display(),
-                tree.segments.len()
-            ));
-        }
-        Ok(())
+        })
     }
+}
+
+/// Checks that nothing is given that a hard case has no use for.
+fn check_strays(options: &PhantomOptions, shape: &ShapeOptions) -> Result<()> {
+    let given = options.given().into_iter().chain(shape.given());
+    let mut strays = given.filter(|key| !["kind", "output", "gzip"].contains(&&**key));
+    match strays.next() {
+        Some(key) => Err(Error::usage(format!(
+            "'{}' does not go with a hard case: its voxels are what makes it hard",
+            key.replace("voxel-type", "type")
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn write_phantom(
+    kind: PhantomKind,
+    options: &PhantomOptions,
+    shape: &ShapeOptions,
+    output: &Path,
+    inputs: &[&Path],
+) -> Result<()> {
+    let tree_file = output.with_extension("tree.json");
+    if kind == PhantomKind::Vessels {
+        outputs::check(&tree_file, inputs)?;
+    }
+    let spec = options.spec(kind, shape)?;
+    let made = phantom(&spec)?;
+    made.volume.notes().iter().for_each(note);
+    write_nrrd(&made.volume, output, options.is_gzipped())?;
+    message(format_args!(
+        "wrote {}: {} {}; {}",
+        output.display(),
+        spec.dims,
+        spec.voxel_type,
+        made.truth
+    ));
+    if let Some(tree) = &made.tree {
+        write_tree(&tree_file, tree)?;
+        message(format_args!(
+            "wrote {}: {} vessel segments",
+            tree_file.display(),
+            tree.segments.len()
+        ));
+    }
+    Ok(())
 }
 
 fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {

@@ -6,10 +6,10 @@ use crate::VERSION;
 use crate::batch::Provenance;
 use crate::error::Result;
 use crate::frame::{self, Frame, Wanted};
-use crate::measure::Counts;
+use crate::lab::measure::Counts;
+use crate::lab::tolerance::{Choice, Cost, ToleranceStats};
 use crate::render::GradientFigures;
 use crate::scene::{Resolved, SamplingMethod};
-use crate::tolerance::{Choice, Cost, ToleranceStats};
 
 use super::engine::{Engine, Rendered};
 use super::job::{Job, JobArguments};

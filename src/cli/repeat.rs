@@ -1,6 +1,6 @@
 //! The command line, to be given again.
 
-use crate::report;
+use crate::lab::report;
 
 /// How this program was called, as a report passes it on: by its name alone, and so are its files.
 pub fn command_line() -> String {

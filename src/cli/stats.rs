@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
-use crate::measure::{Counts, host_peak_bytes};
+use crate::lab::measure::{Counts, host_peak_bytes};
+use crate::lab::tolerance::ToleranceStats;
 use crate::output::write_atomically;
 use crate::scene::SceneOptions;
-use crate::tolerance::ToleranceStats;
 use crate::volume::Volume;
 
 use super::terminal::write_json;

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::frame::Wanted;
+use crate::lab::tolerance::{self, Choice, SEED, Task};
 use crate::scene::{Camera, ErrorBound, SceneOptions};
-use crate::tolerance::{self, Choice, SEED, Task};
 
 use super::engine::Caster;
 use super::load::Loaded;

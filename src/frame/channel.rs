@@ -7,6 +7,22 @@ use super::{Encoding, Frame, Layer};
 /// The colour's channels: linear light, premultiplied.
 pub(super) const COLOR: [&str; 4] = ["R", "G", "B", "A"];
 
+/// The names of a file's channels, in the order of an NPY's last axis (EXR keeps its channels
+/// sorted by name).
+pub fn channels(encoding: &Encoding) -> Vec<String> {
+    let color: &[&str] = if encoding.format.is_display() {
+        &["R", "G", "B"]
+    } else {
+        &COLOR
+    };
+    let layers = encoding.layers_in_order().flat_map(Layer::channels);
+    color
+        .iter()
+        .chain(layers)
+        .map(|name| (*name).to_owned())
+        .collect()
+}
+
 /// One channel of a frame.
 pub(super) struct Channel<'a> {
     pub name: &'static str,
@@ -44,7 +60,7 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// The channels that `encoding` asks for, named and ordered as [`super::channels`] says.
+/// The channels that `encoding` requests, named and ordered as [`channels`] says.
 ///
 /// # Errors
 /// A layer whose plane the frame lacks.

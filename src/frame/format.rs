@@ -154,19 +154,3 @@ impl Encoding {
             .filter(|layer| self.format.carries_layers() && self.layers.contains(layer))
     }
 }
-
-/// The names of a file's channels, in the order of an NPY's last axis (EXR keeps its channels
-/// sorted by name).
-pub fn channels(encoding: &Encoding) -> Vec<String> {
-    let color: &[&str] = if encoding.format.is_display() {
-        &["R", "G", "B"]
-    } else {
-        &super::channel::COLOR
-    };
-    let layers = encoding.layers_in_order().flat_map(Layer::channels);
-    color
-        .iter()
-        .chain(layers)
-        .map(|name| (*name).to_owned())
-        .collect()
-}

@@ -8,7 +8,8 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::Result;
 
-use super::{Frame, quantize, write};
+use super::image_error::image_failed;
+use super::{Frame, quantize};
 
 pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame, quality: u8) -> Result<()> {
     let (width, height) = (frame.size.width(), frame.size.height());
@@ -19,5 +20,5 @@ pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame, quality: 
             height,
             ExtendedColorType::Rgb8,
         )
-        .map_err(|error| write::image_failed(path, error))
+        .map_err(|error| image_failed(path, error))
 }

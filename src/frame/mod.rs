@@ -2,10 +2,12 @@
 //! ([`write()`]) and compared with each other ([`mod@error`]).
 
 mod animation;
+mod bit_equal;
 mod channel;
 pub mod error;
 mod exr;
 mod format;
+mod image_error;
 mod jpeg;
 mod metadata;
 mod npy;
@@ -18,7 +20,8 @@ mod whole;
 mod write;
 
 pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
-pub use format::{BitDepth, Encoding, Format, channels};
+pub use channel::channels;
+pub use format::{BitDepth, Encoding, Format};
 pub use metadata::{carrier, read_encoding, read_metadata};
 pub use percentile::{median, percentile};
 pub use png::read_display;

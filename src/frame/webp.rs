@@ -8,7 +8,8 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::Result;
 
-use super::{Frame, quantize, write};
+use super::image_error::image_failed;
+use super::{Frame, quantize};
 
 /// The header has 14 bits for a side; most decoders stop one short of 2^14.
 pub(super) const MAX_SIDE_PX: u32 = 16_383;
@@ -22,5 +23,5 @@ pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result
             height,
             ExtendedColorType::Rgb8,
         )
-        .map_err(|error| write::image_failed(path, error))
+        .map_err(|error| image_failed(path, error))
 }

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use image::ImageError;
-
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
@@ -42,11 +40,4 @@ pub fn write(
         Format::Npy => npy::encode(out, frame.size, &channels_of(frame, encoding)?)
             .map_err(|cause| Error::writing(path, "write", &cause)),
     })
-}
-
-pub(super) fn image_failed(path: &Path, error: ImageError) -> Error {
-    match error {
-        ImageError::IoError(cause) => Error::writing(path, "write", &cause),
-        other => Error::resource(format!("{}: cannot write: {other}", path.display())),
-    }
 }

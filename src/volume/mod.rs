@@ -13,6 +13,7 @@ mod read;
 mod robust;
 mod shortened;
 mod smooth;
+mod tally;
 mod write_nrrd;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};
@@ -21,13 +22,12 @@ pub use histogram::{Histogram, suggested_iso};
 pub use mapped::MappedFile;
 pub use percentiles::percentiles;
 pub use phantom::{
-    HardCase, HardVolume, MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment,
-    VesselTree, orientation_of, phantom,
+    MURRAY_EXPONENT, Phantom, PhantomKind, PhantomSpec, VesselSegment, VesselTree, phantom,
 };
 pub use read::{Accept, RawLayout, RawSize, RawType, ReadOptions, files_of, read, read_if};
 pub use shortened::end_when_shortened;
 pub use smooth::smooth;
-pub use write_nrrd::write_nrrd;
+pub use write_nrrd::{write_nrrd, write_nrrd_of};
 
 use glam::DVec3;
 use rayon::prelude::*;

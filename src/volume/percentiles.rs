@@ -1,6 +1,6 @@
 //! Percentiles of a volume's values, by order statistics.
 
-use super::histogram::tally_in;
+use super::tally::tally_in;
 use super::{Volume, Voxels};
 
 /// Values of a key's upper or lower half.

@@ -73,6 +73,15 @@ pub fn stored_robust_range(volume: &Volume) -> Range {
     without_padding(volume, robust, at[6])
 }
 
+impl Histogram {
+    /// `bins` bins (at least one) over the range in which nearly all of `volume` lies: without a
+    /// few far-away voxels and without padding, which would leave the rest a bin or two. Of most
+    /// volumes that is the whole range.
+    pub fn robust(volume: &Volume, bins: usize) -> Self {
+        Self::within(volume, stored_robust_range(volume), bins)
+    }
+}
+
 /// Whether the values within `rest` fall into classes.
 fn has_classes(volume: &Volume, rest: Range) -> bool {
     let tells = match volume.voxels().voxel_type() {

@@ -50,7 +50,7 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
 ///
 /// # Errors
 /// The file cannot be written.
-pub(super) fn write_nrrd_of(
+pub fn write_nrrd_of(
     volume: &Volume,
     type_name: &str,
     endian: &str,

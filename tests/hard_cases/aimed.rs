@@ -1,7 +1,7 @@
 //! Rays aimed at corners, edges, faces and tangents of random cells: none is lost.
 
-use angioray::bench::aimed::{Aim, AimedRay, Report, Target, answers, run, target};
 use angioray::frame::{Certificate, Kind};
+use angioray::lab::bench::aimed::{Aim, AimedRay, Report, Target, answers, run, target};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{FirstCrossing, RayCaster};

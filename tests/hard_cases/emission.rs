@@ -4,7 +4,7 @@ use angioray::scene::{Homogeneity, HomogeneityRule, Picture, Quadrature};
 use angioray::volume::{NonFinite, Rescale, Volume, Voxels};
 
 use crate::mutant::{Mutant, kernel};
-use crate::trial::{Seen, is, judge, near};
+use crate::trial::{Seen, check, is, near};
 
 pub const CASES: &[&str] = &[
     "homogeneous",
@@ -97,7 +97,7 @@ fn homogeneous() {
             "return AS_FLOATS(k) * lattice->step_mm;",
         )],
     );
-    judge(
+    check(
         "emission::homogeneous",
         "homogeneous",
         constant_medium,
@@ -118,7 +118,7 @@ fn slab() {
             "    f = f < 0.5f ? FLOATS(0.0f) : FLOATS(1.0f);\n    ColorOpacity seen;\n",
         )],
     );
-    judge("emission::slab", "slab", truth, &[not_between]);
+    check("emission::slab", "slab", truth, &[not_between]);
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn ramp() {
         "lib/light/transfer.clh",
         &[("depth_of_opacity(clear)", "clear")],
     );
-    judge("emission::ramp", "ramp", truth, &[faint_alone]);
+    check("emission::ramp", "ramp", truth, &[faint_alone]);
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn gaussian() {
         "lib/light/accumulate.clh",
         &[("weighted(light, accumulated->transmittance)", "light")],
     );
-    judge(
+    check(
         "emission::gaussian",
         "gaussian",
         |_| Vec::new(),
@@ -167,7 +167,7 @@ fn tf_spike() {
         "pass/adaptive_emission.cl",
         &[("which & near->after != far->after", "NO_LANE")],
     );
-    judge(
+    check(
         "emission::tf_spike",
         "tf-spike",
         truth,
@@ -184,7 +184,7 @@ fn tf_stairs() {
         };
         emission.quadrature = Quadrature::default();
     });
-    judge(
+    check(
         "emission::tf_stairs",
         "tf-stairs",
         |_| Vec::new(),
@@ -214,7 +214,7 @@ fn tf_outside() {
             }
         }
     }
-    judge("emission::tf_outside", "tf-outside", truth, &[OTHER_LENGTH]);
+    check("emission::tf_outside", "tf-outside", truth, &[OTHER_LENGTH]);
 }
 
 #[test]
@@ -239,7 +239,7 @@ fn opaque_step() {
             "return opacity == 1.0f ? FLOATS(INFINITY) : opacity > 0.0f ? absorption",
         )],
     );
-    judge("emission::opaque_step", "opaque-step", truth, &[infinite]);
+    check("emission::opaque_step", "opaque-step", truth, &[infinite]);
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn faint_4096() {
             "depth_of_opacity(1.0f - (1.0f - clear))",
         )],
     );
-    judge("emission::faint_4096", "faint-4096", truth, &[lost_digits]);
+    check("emission::faint_4096", "faint-4096", truth, &[lost_digits]);
 }
 
 #[test]
@@ -279,7 +279,7 @@ fn thin_bright_sheet() {
         let geometry = *volume.geometry();
         Volume::new(dims, voxels, geometry, Rescale::IDENTITY, NonFinite::Refuse).unwrap()
     });
-    judge(
+    check(
         "emission::thin_bright_sheet",
         "thin-bright-sheet",
         truth,
@@ -302,7 +302,7 @@ fn false_homogeneous() {
             limit: 0.3,
         });
     });
-    judge(
+    check(
         "emission::false_homogeneous",
         "false-homogeneous",
         truth,
@@ -312,7 +312,7 @@ fn false_homogeneous() {
 
 #[test]
 fn anisotropic_1_1_10() {
-    judge(
+    check(
         "emission::anisotropic_1_1_10",
         "anisotropic-1-1-10",
         constant_medium,

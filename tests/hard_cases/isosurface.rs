@@ -6,7 +6,7 @@ use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
 
 use crate::mutant::{Mutant, NEVER_ABOVE, kernel};
-use crate::trial::{Seen, is, judge, near};
+use crate::trial::{Seen, check, is, near};
 
 pub const CASES: &[&str] = &[
     "tangent",
@@ -112,7 +112,7 @@ fn tangent() {
             _ => is("something is hit", seen.hits() > 0),
         }
     }
-    judge("isosurface::tangent", "tangent", truth, &[NO_TURNS]);
+    check("isosurface::tangent", "tangent", truth, &[NO_TURNS]);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn three_roots() {
             "Mask in_first = (starts_in ^ a_in) & !(a_in ^ b_in);",
         )],
     );
-    judge(
+    check(
         "isosurface::three_roots",
         "three-roots",
         truth,
@@ -154,7 +154,7 @@ fn two_roots_in_a_step() {
         }
         lines
     }
-    judge(
+    check(
         "isosurface::two_roots_in_a_step",
         "two-roots-in-a-step",
         truth,
@@ -191,7 +191,7 @@ fn plateau() {
             seen.name.contains("199") || seen.hits() > 0,
         )
     }
-    judge("isosurface::plateau", "plateau", truth, &[ABOVE_ONLY]);
+    check("isosurface::plateau", "plateau", truth, &[ABOVE_ONLY]);
 }
 
 #[test]
@@ -210,7 +210,7 @@ fn iso_at_extremes() {
         }
     }
     let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
-    judge(
+    check(
         "isosurface::iso_at_extremes",
         "iso-at-extremes",
         truth,
@@ -220,7 +220,7 @@ fn iso_at_extremes() {
 
 #[test]
 fn saddle() {
-    judge("isosurface::saddle", "saddle", |_| Vec::new(), &[NO_CUBE]);
+    check("isosurface::saddle", "saddle", |_| Vec::new(), &[NO_CUBE]);
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn thin_vessels() {
             seen.hits() > seen.pixels() / 20,
         )
     }
-    judge(
+    check(
         "isosurface::thin_vessels",
         "thin-vessels",
         truth,
@@ -253,7 +253,7 @@ fn touching_vessels() {
         lines.extend(is("both are hit", hits.count() >= 12));
         lines
     }
-    judge(
+    check(
         "isosurface::touching_vessels",
         "touching-vessels",
         truth,
@@ -270,7 +270,7 @@ fn one_bright_voxel() {
         let depth = depth_of(seen, DVec3::new(4.0 + 5.0 / 255.0, 4.0, 4.0));
         near("the depth", seen.depth_mm(0), depth, 1e-3)
     }
-    judge(
+    check(
         "isosurface::one_bright_voxel",
         "one-bright-voxel",
         truth,
@@ -292,7 +292,7 @@ fn stenosis() {
         ));
         lines
     }
-    judge("isosurface::stenosis", "stenosis", truth, &[SEVEN_CORNERS]);
+    check("isosurface::stenosis", "stenosis", truth, &[SEVEN_CORNERS]);
 }
 
 #[test]
@@ -312,7 +312,7 @@ fn sheet() {
         lines.truncate(3);
         lines
     }
-    judge(
+    check(
         "isosurface::sheet",
         "sheet",
         truth,
@@ -330,7 +330,7 @@ fn step_edge() {
         let depth = depth_of(seen, DVec3::new(7.0 + iso / 255.0, 4.0, 4.0));
         near("the depth", seen.depth_mm(seen.middle()), depth, 1e-3)
     }
-    judge("isosurface::step_edge", "step-edge", truth, &[NO_ROOT]);
+    check("isosurface::step_edge", "step-edge", truth, &[NO_ROOT]);
 }
 
 /// The volume as nodes see it that forget their border voxels: each leaf has the range of the voxels that
@@ -378,7 +378,7 @@ fn corner_voxels() {
             .count();
         is("twelve voxels are found", bright == 12)
     }
-    judge(
+    check(
         "isosurface::corner_voxels",
         "corner-voxels",
         truth,
@@ -404,7 +404,7 @@ fn zero_gradient() {
             "fallback.x = fallback.y = fallback.z = FLOATS(0.0f);\n    Mask vanishes = ",
         )],
     );
-    judge(
+    check(
         "isosurface::zero_gradient",
         "zero-gradient",
         truth,
@@ -432,7 +432,7 @@ fn mirrored_normals() {
         "lib/volume/gradient.clh",
         &[("volume.gradient_row_x.x * covector.x", "covector.x")],
     );
-    judge(
+    check(
         "isosurface::mirrored_normals",
         "mirrored-normals",
         truth,
@@ -442,7 +442,7 @@ fn mirrored_normals() {
 
 #[test]
 fn marschner_lobb_41() {
-    judge(
+    check(
         "isosurface::marschner_lobb_41",
         "marschner-lobb-41",
         |_| Vec::new(),
@@ -452,7 +452,7 @@ fn marschner_lobb_41() {
 
 #[test]
 fn marschner_lobb_32() {
-    judge(
+    check(
         "isosurface::marschner_lobb_32",
         "marschner-lobb-32",
         |_| Vec::new(),
@@ -465,7 +465,7 @@ fn white_noise() {
     fn truth(seen: &Seen) -> Vec<String> {
         is("most rays hit", seen.hits() > seen.pixels() / 4)
     }
-    judge(
+    check(
         "isosurface::white_noise",
         "white-noise",
         truth,

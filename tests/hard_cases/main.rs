@@ -13,7 +13,7 @@ mod rays;
 mod trial;
 mod volumes;
 
-use angioray::volume::HardCase;
+use angioray::lab::hardcases::HardCase;
 
 /// The tests of this program by the case that they are of.
 const TESTS: &[&[&str]] = &[

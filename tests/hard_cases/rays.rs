@@ -1,12 +1,13 @@
 //! Rays: cases 1 to 5. Case 6, that every loop ends, is `aimed::hostile_rays_end`.
 
+use angioray::lab::hardcases::HardCase;
 use angioray::scene::{Camera, Scene};
-use angioray::volume::{Geometry, HardCase, NonFinite, Rescale, Volume, Voxels};
+use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
 
 use crate::common::on_reference;
 use crate::mutant::{Mutant, kernel};
-use crate::trial::{Seen, is, judge, near, resolved};
+use crate::trial::{Seen, check, is, near, resolved};
 
 pub const CASES: &[&str] = &[
     "axis-rays",
@@ -33,7 +34,7 @@ fn axis_rays() {
         "lib/ray/ray.clh",
         &[("#define MIN_DIR 1e-20f", "#define MIN_DIR 0.0f")],
     );
-    judge("rays::axis_rays", "axis-rays", something, &[no_guard]);
+    check("rays::axis_rays", "axis-rays", something, &[no_guard]);
 }
 
 #[test]
@@ -46,7 +47,7 @@ fn grid_rays() {
             "a.count = axis_cells(voxels) - 1;",
         )],
     );
-    judge("rays::grid_rays", "grid-rays", something, &[last_cell]);
+    check("rays::grid_rays", "grid-rays", something, &[last_cell]);
 }
 
 #[test]
@@ -64,7 +65,7 @@ fn face_rays() {
         let all = seen.scene.picture.mode() != "mip" || seen.hits() == seen.pixels();
         is("every ray meets the volume", all)
     }
-    judge("rays::face_rays", "face-rays", outermost, &[open]);
+    check("rays::face_rays", "face-rays", outermost, &[open]);
 }
 
 #[test]
@@ -77,7 +78,7 @@ fn eye_on_grid() {
             "interval.enter = FLOATS(-INFINITY);",
         )],
     );
-    judge(
+    check(
         "rays::eye_on_grid",
         "eye-on-grid",
         |_| Vec::new(),
@@ -98,14 +99,14 @@ fn far_camera() {
     ray.origin.z.high = (ray.origin.z.high - ray.dir.z.high * ray.base_mm) + ray.dir.z.high * ray.base_mm;",
         )],
     );
-    judge("rays::far_camera", "far-camera", something, &[from_the_eye]);
+    check("rays::far_camera", "far-camera", something, &[from_the_eye]);
 }
 
 #[test]
 fn lenses() {
     // Lengths along rays at the picture's edge are measured along the middle one.
     let not_unit = kernel("lib/ray/camera.clh", &[("1.0f / len", "FLOATS(1.0f)")]);
-    judge("rays::lenses", "lenses", something, &[not_unit]);
+    check("rays::lenses", "lenses", something, &[not_unit]);
 }
 
 /// The bump's surface is that of the same voxels at the world's origin with a spacing of 1 mm, as
@@ -126,7 +127,7 @@ fn same_bump(seen: &Seen) -> Vec<String> {
     )
     .unwrap();
     let (case, _) = HardCase::named("tiny-spacing").unwrap();
-    let scenes = resolved(case, 0, &unit);
+    let scenes = resolved(case, &unit);
     let (_, scene) = scenes.iter().find(|(name, _)| name == seen.name).unwrap();
     let expected = on_reference(&unit, scene);
     let (kind, depth) = (expected.kind.unwrap(), expected.depth.unwrap());
@@ -161,7 +162,7 @@ fn far_origin() {
         scene.camera =
             Camera::look_at(eye, eye + camera.forward(), camera.up(), camera.lens()).unwrap();
     });
-    judge("rays::far_origin", "far-origin", same_bump, &[narrowed]);
+    check("rays::far_origin", "far-origin", same_bump, &[narrowed]);
 }
 
 #[test]
@@ -174,7 +175,7 @@ fn tiny_spacing() {
             "interval.enter = FLOATS(1e-3f);",
         )],
     );
-    judge("rays::tiny_spacing", "tiny-spacing", same_bump, &[a_micron]);
+    check("rays::tiny_spacing", "tiny-spacing", same_bump, &[a_micron]);
 }
 
 #[test]
@@ -184,5 +185,5 @@ fn huge_spacing() {
         "lib/ray/ray.clh",
         &[("#define MIN_DIR 1e-20f", "#define MIN_DIR 1e-5f")],
     );
-    judge("rays::huge_spacing", "huge-spacing", same_bump, &[small]);
+    check("rays::huge_spacing", "huge-spacing", same_bump, &[small]);
 }

@@ -1,20 +1,20 @@
-//! One hard case on trial: its scenes rendered both ways and judged, then its mutants.
+//! One hard case on trial: its scenes rendered on device and reference and checked, then its mutants.
 
-use angioray::bench::{Judge, Met, Verdict};
 use angioray::frame::{Frame, Kind, Wanted};
 use angioray::gpu::Device;
-use angioray::hardcases::scenes;
+use angioray::lab::hardcases::HardCase;
+use angioray::lab::measure::{Answer, HitJudge, HitVerdict};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{Picture, Scene, SceneOptions, Subject, Traverse};
-use angioray::volume::{HardCase, Histogram, Volume, suggested_iso};
+use angioray::volume::{Histogram, Volume, suggested_iso};
 
 use crate::common::{self, assert_sound, on_reference};
 use crate::limits::{DISPLACED, PROJECTED, WRONG_PIXELS, light};
 use crate::mutant::{CAUGHT, Mutant, assert_caught, is_mutant};
 
-/// A scene of a case, to be held against what is known of it.
+/// A scene of a case, to be compared with what is known of it.
 pub struct Seen<'a> {
     /// The scene's name.
     pub name: &'a str,
@@ -71,16 +71,16 @@ impl Seen<'_> {
     }
 }
 
-/// Gives one line for each thing that is not as it is known to be.
-pub type Truth = fn(&Seen) -> Vec<String>;
+/// Returns a line for each thing that is not as it is known to be.
+pub type KnownAnswer = fn(&Seen) -> Vec<String>;
 
-/// That `found` is `expected` to within `limit`, as a line where it is not.
-pub fn near(what: &str, found: f64, expected: f64, limit: f64) -> Vec<String> {
-    if (found - expected).abs() <= limit {
+/// A line where `value` is not `expected` to within `limit`.
+pub fn near(what: &str, value: f64, expected: f64, limit: f64) -> Vec<String> {
+    if (value - expected).abs() <= limit {
         Vec::new()
     } else {
         vec![format!(
-            "{what} is {found}, not {expected} within {limit:e}"
+            "{what} is {value}, not {expected} within {limit:e}"
         )]
     }
 }
@@ -102,14 +102,14 @@ struct Change {
     octree: Option<fn(&Volume) -> Volume>,
 }
 
-/// Judges the case `name` and shows that each of its mutants is caught. `test` is the path of the
+/// Checks the case `name` and shows that each of its mutants is caught. `test` is the path of the
 /// test, for running it again.
-pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
+pub fn check(test: &str, name: &str, answer: KnownAnswer, mutants: &[Mutant]) {
     let Some(device) = common::device() else {
         return;
     };
     let (case, _) = HardCase::named(name).unwrap();
-    let wrong = wrong(&device, case, truth, &Change::default(), true);
+    let wrong = wrong(&device, case, answer, &Change::default(), true);
     assert!(wrong.is_empty(), "{name}: {CAUGHT}: {}", wrong.join("\n"));
     if is_mutant() {
         return;
@@ -129,14 +129,14 @@ pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
                 volume: Some(volume),
                 ..Change::default()
             },
-            // Ray by ray: a beam looks at the leaves beside it too, and may be saved by them.
+            // Ray by ray: a ray packet visits the leaves beside it too, and may be saved by them.
             Mutant::Octree(octree) => Change {
                 octree: Some(octree),
                 scene: Some(|scene| scene.sampling.traverse = Traverse::Uniform),
                 ..Change::default()
             },
         };
-        let caught = self::wrong(&device, case, truth, &change, false);
+        let caught = self::wrong(&device, case, answer, &change, false);
         assert!(
             !caught.is_empty(),
             "{name} does not catch a change on the host"
@@ -149,14 +149,14 @@ pub fn judge(test: &str, name: &str, truth: Truth, mutants: &[Mutant]) {
 fn wrong(
     device: &Device,
     case: &HardCase,
-    truth: Truth,
+    answer: KnownAnswer,
     change: &Change,
-    tell: bool,
+    verbose: bool,
 ) -> Vec<String> {
     let mut wrong = Vec::new();
     for member in 0..case.count() {
         let volume = case.volume(member).unwrap().volume;
-        let resolved = resolved(case, member, &volume);
+        let resolved = resolved(case, &volume);
         let changed = change.volume.map(|change| change(&volume));
         let cast = changed.as_ref().unwrap_or(&volume);
         let ranged = change.octree.map(|change| change(&volume));
@@ -176,7 +176,7 @@ fn wrong(
             };
             let sound = std::panic::catch_unwind(|| assert_sound(&what, &frame));
             wrong.extend(sound.err().map(|_| format!("{what}: a plane is not sound")));
-            let mut lines = apart(&volume, scene, &expected, &frame, &what, tell);
+            let mut lines = apart(&volume, scene, &expected, &frame, &what, verbose);
             for (by, frame) in [("reference", &expected), ("device", &frame)] {
                 let seen = Seen {
                     name: scene_name,
@@ -184,7 +184,11 @@ fn wrong(
                     scene,
                     frame,
                 };
-                lines.extend(truth(&seen).into_iter().map(|line| format!("{by}: {line}")));
+                lines.extend(
+                    answer(&seen)
+                        .into_iter()
+                        .map(|line| format!("{by}: {line}")),
+                );
             }
             wrong.extend(lines.into_iter().map(|line| format!("{what}: {line}")));
         }
@@ -193,7 +197,7 @@ fn wrong(
 }
 
 /// The case's scenes as `angioray render` resolves them.
-pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String, Scene)> {
+pub fn resolved(case: &HardCase, volume: &Volume) -> Vec<(String, Scene)> {
     let histogram = Histogram::robust(volume, 1024);
     let (center_world, radius_mm) = volume.bounding_sphere();
     let subject = Subject {
@@ -205,7 +209,7 @@ pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String,
         otsu: histogram.otsu(),
         suggested_iso: suggested_iso(&histogram),
     };
-    scenes(case, member, volume)
+    case.scenes(volume)
         .into_iter()
         .map(|hard| {
             let options = SceneOptions::parse(&hard.toml, &hard.name).unwrap();
@@ -221,12 +225,12 @@ fn apart(
     expected: &Frame,
     frame: &Frame,
     what: &str,
-    tell: bool,
+    verbose: bool,
 ) -> Vec<String> {
     let mut lines = Vec::new();
     if let Picture::Surface { .. } = scene.picture {
         let verdicts = surface_verdicts(volume, scene, expected, frame);
-        if tell {
+        if verbose {
             println!("{what}: {verdicts:?}");
         }
         if verdicts.wrong > WRONG_PIXELS {
@@ -245,11 +249,15 @@ fn apart(
             })
             .to_vec(),
         Picture::Emission(emission) => {
-            vec![("light".into(), most_light(expected, frame), light(emission))]
+            vec![(
+                "light".into(),
+                max_light_error(expected, frame),
+                light(emission),
+            )]
         }
     };
     for (figure, measured, limit) in measured {
-        if tell {
+        if verbose {
             println!("{what}: {figure} {measured:.2e}");
         }
         if measured > limit {
@@ -260,15 +268,15 @@ fn apart(
 }
 
 /// The largest difference of any channel of premultiplied linear light, and of opacity.
-fn most_light(expected: &Frame, frame: &Frame) -> f64 {
+fn max_light_error(expected: &Frame, frame: &Frame) -> f64 {
     let channels = expected.color.iter().flatten();
     let pairs = channels.zip(frame.color.iter().flatten());
-    pairs.fold(0.0, |most, (a, b)| {
+    pairs.fold(0.0, |max, (a, b)| {
         let apart = f64::from((a - b).abs());
         if apart.is_nan() {
             f64::INFINITY
         } else {
-            apart.max(most)
+            apart.max(max)
         }
     })
 }
@@ -282,11 +290,11 @@ struct Verdicts {
     borderline: usize,
     displaced: usize,
     /// Voxels, of those that agree.
-    most_apart: f64,
+    max_apart: f64,
 }
 
 fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Frame) -> Verdicts {
-    let judge = Judge::new(volume, scene).unwrap();
+    let judge = HitJudge::new(volume, scene).unwrap();
     let depth = frame.depth.as_ref().unwrap();
     let (kind, kind_expected) = (
         frame.kind.as_ref().unwrap(),
@@ -301,8 +309,8 @@ fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Fr
             scene,
             frame,
         };
-        let met = Met {
-            kind: [Kind::Nothing, Kind::Surface, Kind::Cap, Kind::Geometry][kind[pixel] as usize],
+        let answer = Answer {
+            kind: [Kind::Nothing, Kind::Surface, Kind::Cap][kind[pixel] as usize],
             depth_mm: f64::from(depth[pixel]),
         };
         let resolution_mm = if depth[pixel].is_finite() {
@@ -311,12 +319,12 @@ fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Fr
             0.0
         };
         let ray = seen.ray(pixel);
-        match judge.verdict(ray, judge.truth(ray), met, resolution_mm) {
-            Verdict::Agrees { apart } => counts.most_apart = counts.most_apart.max(apart),
-            Verdict::Borderline => counts.borderline += 1,
-            Verdict::Missed | Verdict::Extra => counts.wrong += 1,
-            Verdict::Displaced { apart } if apart.is_infinite() => counts.wrong += 1,
-            Verdict::Displaced { .. } => counts.displaced += 1,
+        match judge.verdict(ray, judge.reference(ray), answer, resolution_mm) {
+            HitVerdict::Agrees { apart } => counts.max_apart = counts.max_apart.max(apart),
+            HitVerdict::Borderline => counts.borderline += 1,
+            HitVerdict::Missed | HitVerdict::Extra => counts.wrong += 1,
+            HitVerdict::Displaced { apart } if apart.is_infinite() => counts.wrong += 1,
+            HitVerdict::Displaced { .. } => counts.displaced += 1,
         }
     }
     counts

@@ -1,19 +1,18 @@
 //! Volumes: cases 22 to 26.
 
 use angioray::frame::{Frame, Wanted};
+use angioray::lab::hardcases::{HardCase, orientation_of};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{Emission, Knot, Picture, Projection, Rgb, Scene, TransferFunction, Window};
-use angioray::volume::{
-    Geometry, HardCase, NonFinite, ReadOptions, Rescale, Volume, Voxels, orientation_of, read,
-};
+use angioray::volume::{Geometry, NonFinite, ReadOptions, Rescale, Volume, Voxels, read};
 use glam::{DMat3, DVec3};
 
 use crate::common::Figure::{AlphaMax, ColorMean, DepthMean, Kind, NormalMean, ValueMax};
 use crate::common::{self, Figure, on_reference};
 use crate::mutant::{Mutant, NEVER_ABOVE, assert_caught, is_mutant, kernel};
-use crate::trial::{Seen, is, judge, near, resolved};
+use crate::trial::{Seen, check, is, near, resolved};
 
 pub const CASES: &[&str] = &[
     "sizes",
@@ -51,7 +50,7 @@ fn sizes() {
             ),
         ],
     );
-    judge("volumes::sizes", "sizes", |_| Vec::new(), &[flat]);
+    check("volumes::sizes", "sizes", |_| Vec::new(), &[flat]);
 }
 
 #[test]
@@ -67,7 +66,7 @@ fn constant() {
         }
     }
     let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
-    judge("volumes::constant", "constant", truth, &[never_above]);
+    check("volumes::constant", "constant", truth, &[never_above]);
 }
 
 #[test]
@@ -83,7 +82,7 @@ fn types() {
             ("((two) & 0xffff)", "((two) & 0xff)"),
         ],
     );
-    judge("volumes::types", "types", |_| Vec::new(), &[eight_bits]);
+    check("volumes::types", "types", |_| Vec::new(), &[eight_bits]);
 }
 
 /// Their files, written as `angioray phantom` does, give the volumes they are said to give.
@@ -137,7 +136,7 @@ fn non_finite() {
         });
         with_voxels(volume, voxels.collect())
     });
-    judge("volumes::non_finite", "non-finite", truth, &[as_zero]);
+    check("volumes::non_finite", "non-finite", truth, &[as_zero]);
 }
 
 /// A surface, a maximum and an emission from the surface's camera.
@@ -186,7 +185,7 @@ fn orientations() {
     let (case, _) = HardCase::named("orientations").unwrap();
     assert_eq!(case.count(), 48);
     let first = case.volume(0).unwrap().volume;
-    let (_, surface) = &resolved(case, 0, &first)[0];
+    let (_, surface) = &resolved(case, &first)[0];
     let scenes = pictures(surface);
     let frames = |volume: &Volume, kept: usize| -> Vec<Frame> {
         let octree = Octree::build(volume, Leaf::default(), &Silent).unwrap();
@@ -252,7 +251,7 @@ fn wide_index() {
             "((AS_INDEX(z) * volume.ny + AS_INDEX(y)) * volume.nx + AS_INDEX(x)) & 0xffffu",
         )],
     );
-    judge(
+    check(
         "volumes::wide_index",
         "wide-index",
         |_| Vec::new(),
@@ -300,7 +299,7 @@ fn clip_planes() {
         // One plane, written otherwise or among planes that cut nothing.
         if seen.name.starts_with("scaled") || seen.name.starts_with("many") {
             let (case, _) = HardCase::named("clip-planes").unwrap();
-            let scenes = resolved(case, 0, seen.volume);
+            let scenes = resolved(case, seen.volume);
             let (_, half) = scenes
                 .iter()
                 .find(|(name, _)| name.starts_with("half"))
@@ -321,7 +320,7 @@ fn clip_planes() {
         "lib/ray/clip.clh",
         &[("i < clip.count &&", "i < 1u && i < clip.count &&")],
     );
-    judge(
+    check(
         "volumes::clip_planes",
         "clip-planes",
         truth,

@@ -1,9 +1,9 @@
-//! What is refused before the work.
+//! Checks before the work begins.
 
 use std::path::{Path, PathBuf};
 
-use crate::compare::Folder;
 use crate::error::{Error, Result};
+use crate::lab::compare::Folder;
 use crate::scene::options::group::Keys;
 use crate::scene::{ErrorBound, Mode, SceneOptions, TransferChoice};
 use crate::volume::files_of;
@@ -11,7 +11,7 @@ use crate::volume::files_of;
 use super::super::load::Source;
 use super::super::outputs;
 
-/// That every flag goes with one of the modes.
+/// Checks that every flag goes with one of the modes.
 pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
     let given = |options: &SceneOptions| {
         let mut keys = options.picture.given();
@@ -40,7 +40,7 @@ pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
     .hint("leave it out, or name another mode in '--modes'"))
 }
 
-/// That a bound can choose in one of the modes.
+/// Checks that a bound can choose in one of the modes.
 pub fn bound(bound: ErrorBound, modes: &[Mode]) -> Result<()> {
     let checked: Vec<Result<()>> = modes.iter().map(|mode| bound.check(*mode)).collect();
     match checked.iter().any(Result::is_ok) {
@@ -49,7 +49,7 @@ pub fn bound(bound: ErrorBound, modes: &[Mode]) -> Result<()> {
     }
 }
 
-/// That no file of the comparison replaces one that it reads.
+/// Checks that no file of the comparison replaces one that it reads.
 pub fn inputs(
     folder: &Folder,
     source: &Source,

@@ -3,13 +3,14 @@
 mod checks;
 mod options;
 mod page;
-mod truth;
+mod reference_cache;
 
+use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_table};
 use crate::error::{Error, Result};
-use crate::measure::Peer;
+use crate::lab::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_table};
+use crate::lab::measure::Peer;
 use crate::octree::Octree;
 use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
@@ -22,8 +23,9 @@ use super::scene::SceneArgument;
 use super::terminal::{lines_to_stdout, message, note};
 use options::{CompareOptions, Named};
 use page::{about, report};
+use reference_cache::reference_cache;
 
-/// Render modes and settings side by side, judged against the reference and timed
+/// Render modes and settings side by side, each with its error against the reference and its time
 #[derive(clap::Args)]
 #[command(override_usage = "angioray compare VOLUME -o DIR [OPTIONS]")]
 #[command(after_help = "Example:
@@ -35,11 +37,11 @@ use page::{about, report};
 An option applies to those of the modes that it goes with: --iso and --tf can stand side by side.
 
 What --sampling, --step, --filter and the like say is compared as one setting more, 'as given'; what
---max-error chooses is another. All are held against the reference of the scene, in linear
+--max-error chooses is another. All are compared with the reference of the scene, in linear
 interpolation and with central differences.
 
 Stopped by Ctrl-C or SIGTERM it ends at once with exit code 75; the results so far are in the folder, and
-the reference's pictures are kept for the next run.
+the reference's pictures are cached for the next run.
 
 A file of settings, for --configs:
   [[setting]]
@@ -68,58 +70,41 @@ pub struct CompareArguments {
 const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
 
-impl CompareArguments {
-    pub fn run(mut self) -> Result<()> {
-        let named = Named::take(&mut self.compare, &mut self.options);
-        named.check()?;
-        let file = self.scene.open()?;
-        let mut compare = CompareOptions::of_file(&file)?;
-        let mut options = SceneOptions::of_file(&file)?;
-        let of_file = Named::take(&mut compare, &mut options);
-        let modes = named.modes().or_else(|| of_file.modes());
-        let compare = self.compare.over(compare);
-        let options = self.options.clone().over(options);
-        // Beside settings that are given: the one that it chooses is a contender like the others.
-        let bound = self.tolerance.over(file.group()?).max_error;
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
+/// What flags and scene file request together.
+struct Request {
+    output: PathBuf,
+    compare: CompareOptions,
+    options: SceneOptions,
+    /// The flags alone, without the volume's properties.
+    flags: SceneOptions,
+    modes: Vec<Mode>,
+    configs: Option<Configs>,
+    bound: Option<ErrorBound>,
+    device: DeviceOptions,
+    scene_file: SceneArgument,
+}
 
-        let Some(FilePath(output)) = &compare.output else {
-            return Err(Error::usage("no folder for the comparison was named")
-                .hint("give it by '--output', or as 'output' in the scene file"));
-        };
-        let repeats = compare.repeats.map_or(REPEATS, Count::get);
-        let configs = compare.configs.as_ref();
-        let configs = configs
-            .map(|FilePath(path)| Configs::read(path))
-            .transpose()?;
-        let of_configs = || configs.as_ref().and_then(Configs::modes);
-        let modes = modes.or_else(of_configs).unwrap_or(MODES.to_vec());
-        checks::meaning(&self.options, &modes)?;
-        if let Some(bound) = bound {
-            checks::bound(bound, &modes)?;
-        }
-        let source = Source::of(&options.volume)?;
-        let mut options = source.stored(options);
+impl CompareArguments {
+    pub fn run(self) -> Result<()> {
+        let request = self.request()?;
+        request.check_flags()?;
+        let source = Source::of(&request.options.volume)?;
+        let mut options = source.stored(request.options.clone());
         // Results and pictures are passed on together: they name the volume, not its place.
         options.volume.volume = Some(FilePath(source.name().to_owned()));
         let Engine::Device {
             device,
             options: use_of_device,
-        } = Engine::open(&device)?
+        } = Engine::open(&request.device)?
         else {
             return Err(Error::usage(
-                "the reference cannot be compared: it is what others are held against",
+                "the reference cannot be compared: it is what others are compared with",
             )
             .hint("choose an OpenCL device: 'angioray devices' lists them"));
         };
-        let folder = Folder::new(output)?;
-        let configs_file = compare
-            .configs
-            .as_ref()
-            .map(|FilePath(path)| path.as_path());
-        checks::inputs(&folder, &source, &options, self.scene.path(), configs_file)?;
-        let commands = compare.peer.as_deref().unwrap_or_default();
+        let folder = Folder::new(&request.output)?;
+        request.check_inputs(&folder, &source, &options)?;
+        let commands = request.compare.peer.as_deref().unwrap_or_default();
         let mut peers = commands
             .iter()
             .map(|command| Peer::start(command))
@@ -127,32 +112,17 @@ impl CompareArguments {
 
         let bars = Bars::new();
         let loaded = source.load(Some(device.info()), &bars)?;
-        let options = loaded.measured(options);
-        let mut modes = modes
-            .into_iter()
-            .map(|mode| mode_settings(mode, &options, configs.as_ref(), &loaded))
-            .collect::<Result<Vec<ModeSettings>>>()?;
-        if let Some(bound) = bound {
-            add_bound(&mut modes, bound);
-        }
-        for of_mode in &modes {
-            let notes = of_mode.resolved.notes.iter();
-            notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
-        }
-        for peer in &mut peers {
-            let name = format!("{} loads the volume", peer.name());
-            let _stage = Stage::begin(&bars, &name, UNKNOWN_TOTAL);
-            peer.load(&loaded.volume)?;
-        }
+        let modes = request.mode_settings(&loaded.measured(options), &loaded)?;
+        load_into(&mut peers, &loaded, &bars)?;
         let began = Instant::now();
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
         let octree_ms = ms_since(began);
         let mut renderer = Renderer::new(&device, &loaded.volume, &octree, use_of_device)?;
-        let truth = truth::truth(compare.cache, &loaded.volume)?;
+        let repeats = request.compare.repeats.map_or(REPEATS, Count::get);
         let comparison = Comparison {
             volume: &loaded.volume,
             subject: loaded.subject,
-            truth,
+            reference: reference_cache(request.compare.cache, &loaded.volume)?,
             modes,
             repeats: repeats as usize,
             about: about(&device, &source, &loaded, octree_ms, repeats),
@@ -165,8 +135,87 @@ impl CompareArguments {
         let (rows, findings) = (compared.rows.clone(), compared.findings.clone());
         report(&comparison, compared, &device, &source, &peers)
             .write(&comparison.folder.report())?;
-        tell(&comparison.folder, &rows, &findings)
+        print_results(&comparison.folder, &rows, &findings)
     }
+
+    /// Merges the flags with the scene file.
+    fn request(mut self) -> Result<Request> {
+        let named = Named::take(&mut self.compare, &mut self.options);
+        named.check()?;
+        let file = self.scene.open()?;
+        let mut compare = CompareOptions::of_file(&file)?;
+        let mut options = SceneOptions::of_file(&file)?;
+        let of_file = Named::take(&mut compare, &mut options);
+        let modes = named.modes().or_else(|| of_file.modes());
+        let compare = self.compare.over(compare);
+        let options = self.options.clone().over(options);
+        // Beside settings that are given: the one that it chooses is a candidate like the others.
+        let bound = self.tolerance.over(file.group()?).max_error;
+        let device = self.device.keep_of(file.group()?);
+        let Some(FilePath(output)) = compare.output.clone() else {
+            return Err(Error::usage("no folder for the comparison was named")
+                .hint("give it by '--output', or as 'output' in the scene file"));
+        };
+        let configs = compare.configs.as_ref();
+        let configs = configs
+            .map(|FilePath(path)| Configs::read(path))
+            .transpose()?;
+        let of_configs = || configs.as_ref().and_then(Configs::modes);
+        let modes = modes.or_else(of_configs).unwrap_or(MODES.to_vec());
+        Ok(Request {
+            output,
+            compare,
+            options,
+            flags: self.options,
+            modes,
+            configs,
+            bound,
+            device: self.device.over(device),
+            scene_file: self.scene,
+        })
+    }
+}
+
+impl Request {
+    fn check_flags(&self) -> Result<()> {
+        checks::meaning(&self.flags, &self.modes)?;
+        match self.bound {
+            Some(bound) => checks::bound(bound, &self.modes),
+            None => Ok(()),
+        }
+    }
+
+    fn check_inputs(&self, folder: &Folder, source: &Source, options: &SceneOptions) -> Result<()> {
+        let configs = self.compare.configs.as_ref();
+        let configs = configs.map(|FilePath(path)| path.as_path());
+        checks::inputs(folder, source, options, self.scene_file.path(), configs)
+    }
+
+    /// The modes in their settings, about which the user is notified.
+    fn mode_settings(&self, options: &SceneOptions, loaded: &Loaded) -> Result<Vec<ModeSettings>> {
+        let modes = self.modes.iter();
+        let mut modes = modes
+            .map(|&mode| mode_settings(mode, options, self.configs.as_ref(), loaded))
+            .collect::<Result<Vec<ModeSettings>>>()?;
+        if let Some(bound) = self.bound {
+            add_bound(&mut modes, bound);
+        }
+        for of_mode in &modes {
+            let notes = of_mode.resolved.notes.iter();
+            notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
+        }
+        Ok(modes)
+    }
+}
+
+/// Gives the peers the volume.
+fn load_into(peers: &mut [Peer], loaded: &Loaded, bars: &Bars) -> Result<()> {
+    for peer in peers {
+        let name = format!("{} loads the volume", peer.name());
+        let _stage = Stage::begin(bars, &name, UNKNOWN_TOTAL);
+        peer.load(&loaded.volume)?;
+    }
+    Ok(())
 }
 
 /// A mode in its settings: those of the file, or the built-in ones, and what the flags say of how
@@ -183,7 +232,7 @@ fn mode_settings(
     Ok(of_mode)
 }
 
-/// Lets a bound choose a setting in every mode that has its metric, and tells of the others.
+/// Lets a bound choose a setting in every mode that has its metric, and notes the others.
 fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
     for of_mode in modes {
         if of_mode.add_bound(bound).is_err() {
@@ -195,8 +244,8 @@ fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
     }
 }
 
-/// Says on stdout what came out, where it lies, and what failed.
-fn tell(folder: &Folder, rows: &[Row], findings: &[String]) -> Result<()> {
+/// Prints the results, where their files are, and what failed.
+fn print_results(folder: &Folder, rows: &[Row], findings: &[String]) -> Result<()> {
     lines_to_stdout(|out| {
         let table = printed_table(rows).markdown();
         table.iter().try_for_each(|line| out.line(line))?;

@@ -1,18 +1,18 @@
-//! What a comparison says beside its rows: of the volume, the device, the way it was measured.
+//! What a comparison reports beside its rows: volume, device, how it was measured.
 
 use serde_json::json;
 
 use crate::VERSION;
-use crate::compare::{Compared, Comparison};
 use crate::gpu::Device;
-use crate::measure::Peer;
-use crate::report::Report;
+use crate::lab::compare::{Compared, Comparison};
+use crate::lab::measure::Peer;
+use crate::lab::report::Report;
 
 use super::super::load::{Loaded, Source};
 use super::super::repeat::command_line;
 use super::super::stats::{DeviceStats, VolumeStats};
 
-/// What the results say beside their rows.
+/// The part of the results beside their rows.
 pub fn about(
     device: &Device,
     source: &Source,
@@ -35,7 +35,7 @@ pub fn about(
     })
 }
 
-/// What the page says around the modes' sections.
+/// The page around the modes' sections.
 pub fn report(
     comparison: &Comparison,
     compared: Compared,
@@ -85,9 +85,9 @@ pub fn report(
     }
     Report {
         title: format!("{name}: speed against error"),
-        summary: "Every picture here was drawn several ways and held against a reference that \
+        summary: "Every picture here was drawn by several methods and compared with a reference that \
             solves the picture by its definition, in double precision. Points further down are \
-            nearer to the truth, points further left are faster; the line joins the settings that \
+            nearer to the reference, points further left are faster; the line joins the settings that \
             are worth their time: nothing less wrong is as fast."
             .into(),
         facts: facts

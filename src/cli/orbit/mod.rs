@@ -1,8 +1,9 @@
 //! `angioray orbit`.
 
-mod making;
+mod frame_record;
 mod options;
 mod plan;
+mod runner;
 mod stats;
 
 use crate::batch::Destination;
@@ -15,9 +16,9 @@ use super::progress::Bars;
 use super::render::{gradient_note, provenance};
 use super::stopping;
 use super::terminal::{message, note};
-use making::{Made, Making};
 use options::OrbitOptions;
 use plan::Plan;
+use runner::{OrbitOutcome, OrbitRunner};
 
 /// Render a volume from all around: a picture per frame, or an animation
 #[derive(clap::Args)]
@@ -32,10 +33,10 @@ use plan::Plan;
   angioray orbit head.nrrd -o frames/%04d.png --frames 360 --resume
   sbatch --array=0-7 --wrap 'angioray orbit head.nrrd -o frames/%04d.png --frames 360 --shard auto'
 
-Stopped by Ctrl-C or SIGTERM it finishes the frame in work and ends with exit code 75; a second signal
+Stopped by Ctrl-C or SIGTERM it finishes the current frame and ends with exit code 75; a second signal
 ends it at once. The same command with --resume makes the rest (where --max-error chose, the flags to give
-in its place are shown). The frames of an animation are kept in a folder beside it, such as head.mp4.frames,
-until it is whole. Pictures other than .png and .exr stay, but cannot be resumed: then the exit code is 1.")]
+in its place are printed). The frames of an animation are saved in a folder beside it, such as head.mp4.frames,
+until it is complete. Pictures other than .png and .exr stay, but cannot be resumed: then the exit code is 1.")]
 pub struct OrbitArguments {
     #[command(flatten)]
     orbit: OrbitOptions,
@@ -61,7 +62,7 @@ impl OrbitArguments {
         plan.destination.check_size(resolved.scene.size)?;
         let orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
 
-        let making = Making {
+        let runner = OrbitRunner {
             plan: &plan,
             job: &job,
             engine: &engine,
@@ -70,38 +71,38 @@ impl OrbitArguments {
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();
-        let missing = making.missing(&orbit, &mine)?;
-        let kept = mine.len() - missing.len();
-        let made = making.make(orbit, &missing)?;
-        stats::write(&making, &made, kept)?;
-        if let Some(stopped) = made.stopped {
+        let missing = runner.missing(&orbit, &mine)?;
+        let existing = mine.len() - missing.len();
+        let outcome = runner.make(orbit, &missing)?;
+        stats::write(&runner, &outcome, existing)?;
+        if let Some(stopped) = outcome.stopped {
             return Err(stopped);
         }
-        tell(&making, &made, kept)
+        report(&runner, &outcome, existing)
     }
 }
 
-/// What was done, in a line.
-fn tell(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
-    let written = &made.written;
+/// Reports what was done, in a line.
+fn report(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) -> Result<()> {
+    let written = &outcome.written;
     if let Some(figures) = written.first().and_then(|w| w.about.gradients) {
         note(gradient_note(&figures));
     }
-    let there = match kept {
+    let there = match existing {
         0 => String::new(),
-        kept => format!(", {kept} were there"),
+        existing => format!(", {existing} existed"),
     };
     let (Some(one), Some(last)) = (written.first(), written.last()) else {
-        match &making.plan.destination {
+        match &runner.plan.destination {
             Destination::Animation { path, .. } => message(format_args!(
-                "wrote {} of {kept} frames that were there",
+                "wrote {} of {existing} existing frames",
                 path.display()
             )),
             Destination::Pictures { .. } => message(format_args!("nothing to do{there}")),
         }
         return Ok(());
     };
-    let files = match &making.plan.destination {
+    let files = match &runner.plan.destination {
         Destination::Animation { path, .. } => path.display().to_string(),
         Destination::Pictures { names, .. } if one.index == last.index => {
             names.path(one.index).display().to_string()
@@ -114,13 +115,13 @@ fn tell(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
     };
     let count = written.len();
     let render_ms: f64 = written.iter().map(|w| w.about.times_ms.render).sum();
-    let first = made.orbit.at(0)?;
+    let first = outcome.orbit.at(0)?;
     message(format_args!(
         "wrote {files}: {count} frames{there}, {} {}, {:.1} ms each on {}",
         first.scene.picture.mode(),
         first.scene.size,
         render_ms / count as f64,
-        making.from.device
+        runner.from.device
     ));
     Ok(())
 }

@@ -30,8 +30,8 @@ group! {
         #[arg(long, value_name = "F", allow_hyphen_values = true)]
         fps: FrameRate,
 
-        /// Keep frames that are there, whole, of the same scene and volume and by the same device
-        /// (.png, .exr, and those of an animation that was stopped), and make the others
+        /// Keep finished frames of the same scene, volume and device (.png, .exr, and those of an
+        /// animation that was stopped), and make the others
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on")]
         resume: Switch,

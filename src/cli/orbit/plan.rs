@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::batch::{Destination, FrameNames, KeptFrames, Shard, ShardChoice};
+use crate::batch::{Destination, FinishedFrames, FrameNames, Shard, ShardChoice};
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Animation, AnimationFormat, Encoding, Format};
 use crate::output::becomes_file;
@@ -13,7 +13,7 @@ use super::super::outputs;
 use super::super::terminal::note;
 use super::options::OrbitOptions;
 
-/// What the flags and the scene file ask for.
+/// What the flags and the scene file request.
 pub struct Plan {
     pub frames: FrameCount,
     /// By which the camera turns in all.
@@ -34,14 +34,14 @@ impl Plan {
     /// Options that are missing or contradict each other, files that cannot be written or are read.
     pub fn of(options: OrbitOptions, job: &Job) -> Result<Self> {
         let Some(frames) = options.frames else {
-            return Err(Error::usage("no number of frames was named")
+            return Err(Error::usage("no number of frames was given")
                 .hint("give it by '--frames', such as --frames 120"));
         };
         let resume = options.resume.is_some_and(Switch::is_on);
-        let (shard, told_by) = (options.shard)
+        let (shard, given_by) = (options.shard)
             .unwrap_or(ShardChoice::Given(Shard::WHOLE))
             .resolve(|name| std::env::var(name).ok())?;
-        if let Some(variables) = told_by {
+        if let Some(variables) = given_by {
             note(format_args!("shard {shard} by {variables}"));
         }
         let (destination, encoding) = destination(&options, job)?;
@@ -67,7 +67,7 @@ impl Plan {
 
     /// How a run ends that is stopped before its end: whether it can be resumed.
     pub fn ended_early(&self) -> ErrorKind {
-        match self.destination.tells_what_is_there() {
+        match self.destination.recognises_finished() {
             true => ErrorKind::Stopped,
             false => ErrorKind::Failed,
         }
@@ -88,7 +88,7 @@ impl Plan {
                 ))
                 .hint("write pictures, such as -o frames/%04d.png, and join them afterwards"));
             }
-            _ if self.resume && !self.destination.tells_what_is_there() => {
+            _ if self.resume && !self.destination.recognises_finished() => {
                 return Err(Error::usage(format!(
                     "{}: such files do not say what scene they are of: '--resume' does not go with them",
                     job.output.path()?.display()
@@ -113,10 +113,10 @@ impl Plan {
                 outputs::check_sequence(names, self.frames, inputs, stats)?;
                 stats.map_or(Ok(()), |stats| outputs::check(stats, inputs))
             }
-            Destination::Animation { path, kept, .. } => {
-                if let Some(kept) = kept {
+            Destination::Animation { path, finished, .. } => {
+                if let Some(finished) = finished {
                     let stats = self.stats.as_deref();
-                    outputs::check_sequence(kept.names(), self.frames, inputs, stats)?;
+                    outputs::check_sequence(finished.names(), self.frames, inputs, stats)?;
                 }
                 outputs::Files {
                     picture: path.clone(),
@@ -157,11 +157,11 @@ fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encodi
         rate: options.fps.unwrap_or_default(),
     };
     animation.check()?;
-    let kept = becomes_file(path).then(|| KeptFrames::of(path));
+    let finished = becomes_file(path).then(|| FinishedFrames::of(path));
     let animation = Destination::Animation {
         path: path.to_owned(),
         animation,
-        kept: kept.transpose()?,
+        finished: finished.transpose()?,
     };
     Ok((animation, encoding))
 }

@@ -3,57 +3,26 @@
 use crate::VERSION;
 use crate::batch::Written;
 use crate::error::Result;
-use crate::frame::{self, Frame};
-use crate::measure::Counts;
-use crate::render::GradientFigures;
-use crate::scene::Picture;
-use crate::tolerance::{Cost, ToleranceStats};
+use crate::frame;
+use crate::lab::tolerance::{Cost, ToleranceStats};
 
-use super::super::engine::Rendered;
 use super::super::stats::{
     self, FrameStats, Memory, OrbitFigures, OrbitStats, PassStats, Stats, Times, VolumeStats,
 };
 
-use super::making::{Made, Making};
-use super::plan::Plan;
+use super::frame_record::FrameRecord;
+use super::runner::{OrbitOutcome, OrbitRunner};
 
-/// What is remembered of a frame.
-pub struct Taken {
-    pub times_ms: Times,
-    pub passes: Vec<PassStats>,
-    /// Where statistics are wanted.
-    pub counts: Option<Counts>,
-    pub gradients: Option<GradientFigures>,
-    pub device_bytes: u64,
-    pub uploaded_bytes: u64,
-}
-
-impl Taken {
-    /// What is remembered, and the frame itself.
-    pub fn of(rendered: Rendered, picture: &Picture, plan: &Plan) -> (Self, Frame) {
-        let counted = plan.stats.as_ref();
-        let taken = Self {
-            times_ms: rendered.times_ms,
-            passes: rendered.passes,
-            counts: counted.map(|_| Counts::of(&rendered.frame, picture)),
-            gradients: rendered.gradients,
-            device_bytes: rendered.device_bytes,
-            uploaded_bytes: rendered.uploaded_bytes,
-        };
-        (taken, rendered.frame)
-    }
-}
-
-/// Writes them where they are wanted, of no frames too: `kept` were there already.
-pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
-    let (plan, loaded) = (making.plan, making.loaded);
+/// Writes statistics where they are wanted, of no frames too: `existing` frames were finished before.
+pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) -> Result<()> {
+    let (plan, loaded) = (runner.plan, runner.loaded);
     let Some(path) = &plan.stats else {
         return Ok(());
     };
-    let written = &made.written;
-    let first = made.orbit.at(0)?;
-    let choosing = (made.chosen.as_ref()).map_or(Cost::default(), |choice| choice.cost);
-    let most_held = written.iter().map(|w| w.about.device_bytes).max();
+    let written = &outcome.written;
+    let first = outcome.orbit.at(0)?;
+    let choosing = (outcome.chosen.as_ref()).map_or(Cost::default(), |choice| choice.cost);
+    let max_device_bytes = written.iter().map(|w| w.about.device_bytes).max();
     let gradients = written.last().and_then(|w| w.about.gradients);
     let uploaded_bytes: u64 = written.iter().map(|w| w.about.uploaded_bytes).sum();
     let times_ms = times_of_all(written);
@@ -62,8 +31,8 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
             version: VERSION,
             command: "orbit",
             scene: &first.options,
-            volume: VolumeStats::of(&making.job.source.path, &loaded.volume, loaded.non_finite),
-            device: making.engine.device(),
+            volume: VolumeStats::of(&runner.job.source.path, &loaded.volume, loaded.non_finite),
+            device: runner.engine.device(),
             channels: frame::channels(&plan.encoding),
             times_ms: Times {
                 read: loaded.read_ms,
@@ -75,17 +44,17 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
             passes: passes_of_all(written),
             counts: written.iter().filter_map(|w| w.about.counts).sum(),
             memory: Memory::now(
-                most_held.unwrap_or(0),
+                max_device_bytes.unwrap_or(0),
                 gradients.map_or(0, |figures| figures.bytes),
                 uploaded_bytes + choosing.uploaded_bytes,
             ),
-            max_error: made.chosen.as_ref().map(ToleranceStats::of),
+            max_error: outcome.chosen.as_ref().map(ToleranceStats::of),
         },
         orbit: OrbitFigures {
             frames: plan.frames.get(),
             degrees: plan.degrees,
-            axis: made.orbit.axis().to_array(),
-            kept,
+            axis: outcome.orbit.axis().to_array(),
+            kept: existing,
             shard: plan.shard.to_string(),
         },
         frames: written
@@ -93,7 +62,7 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
             .filter_map(|w| {
                 Some(FrameStats {
                     index: w.index,
-                    degrees: made.orbit.degrees_at(w.index),
+                    degrees: outcome.orbit.degrees_at(w.index),
                     render_ms: w.about.times_ms.render,
                     read_back_ms: w.about.times_ms.read_back,
                     encode_ms: w.encode_ms,
@@ -106,7 +75,7 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
 }
 
 /// Sums over the frames; what was done once for all is counted once.
-fn times_of_all(written: &[Written<Taken>]) -> Times {
+fn times_of_all(written: &[Written<FrameRecord>]) -> Times {
     let sum = |of: fn(&Times) -> f64| written.iter().map(|w| of(&w.about.times_ms)).sum();
     let once = |of: fn(&Times) -> f64| written.first().map_or(0.0, |w| of(&w.about.times_ms));
     Times {
@@ -123,7 +92,7 @@ fn times_of_all(written: &[Written<Taken>]) -> Times {
 }
 
 /// Every pass's sum over the frames, in the order in which they first ran.
-fn passes_of_all(written: &[Written<Taken>]) -> Vec<PassStats> {
+fn passes_of_all(written: &[Written<FrameRecord>]) -> Vec<PassStats> {
     let mut sums: Vec<PassStats> = Vec::new();
     for pass in written.iter().flat_map(|w| &w.about.passes) {
         match sums.iter_mut().find(|sum| sum.name == pass.name) {

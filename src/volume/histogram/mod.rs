@@ -6,11 +6,9 @@ mod threshold;
 pub(super) use threshold::between_class_share;
 pub use threshold::suggested_iso;
 
-use rayon::prelude::*;
-
-use super::robust::stored_robust_range;
+use super::tally::{tally, tally_in};
 use crate::extent::Range;
-use crate::volume::{Volume, Voxel, Voxels};
+use crate::volume::{Volume, Voxels};
 
 /// Counts of physical values in equal bins over `range`; each bin holds its lower edge, the last
 /// one its upper edge too. What lies beyond the range is counted in the first and the last bin. A
@@ -25,13 +23,6 @@ impl Histogram {
     /// `bins` bins (at least one) over the whole range of `volume`.
     pub fn of(volume: &Volume, bins: usize) -> Self {
         Self::within(volume, volume.stored_range(), bins)
-    }
-
-    /// `bins` bins (at least one) over the range in which nearly all of `volume` lies: without a
-    /// few far-away voxels and without padding, which would leave the rest a bin or two. Of most
-    /// volumes that is the whole range.
-    pub fn robust(volume: &Volume, bins: usize) -> Self {
-        Self::within(volume, stored_robust_range(volume), bins)
     }
 
     /// `bins` bins (at least one) over a range of stored values. Exact for whole-number voxels: no
@@ -74,48 +65,6 @@ impl Histogram {
     pub fn edge(&self, bin: usize) -> f64 {
         self.range.at(bin as f64 / self.counts.len() as f64)
     }
-}
-
-/// How often each stored value of at most 16 bits occurs, by its key.
-fn tally<T: Voxel>(voxels: &[T], key: impl Fn(T) -> usize + Sync) -> Vec<u64> {
-    tally_in(voxels, 1 << (8 * size_of::<T>()), key)
-}
-
-/// How often each of `keys` keys occurs; `key` gives a voxel's.
-pub(super) fn tally_in<T: Voxel>(
-    voxels: &[T],
-    keys: usize,
-    key: impl Fn(T) -> usize + Sync,
-) -> Vec<u64> {
-    // Four tables by turns: runs of one value, such as background, would otherwise wait for their
-    // own last increment. Chunks are long against a table of 2^16 counts.
-    const TABLES: usize = 4;
-    voxels
-        .par_chunks(1 << 22)
-        .map(|chunk| {
-            let mut tables = vec![0_u32; TABLES * keys];
-            for quad in chunk.chunks(TABLES) {
-                for (table, &voxel) in quad.iter().enumerate() {
-                    tables[table * keys + key(voxel)] += 1;
-                }
-            }
-            let mut counts = vec![0_u64; keys];
-            for table in tables.chunks_exact(keys) {
-                for (count, &more) in counts.iter_mut().zip(table) {
-                    *count += u64::from(more);
-                }
-            }
-            counts
-        })
-        .reduce(
-            || vec![0; keys],
-            |mut sum, part| {
-                for (sum, part) in sum.iter_mut().zip(part) {
-                    *sum += part;
-                }
-                sum
-            },
-        )
 }
 
 /// The counts of single whole values (the first one's value is `first`) as bins over `stored`, in

@@ -6,7 +6,8 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::PhantomSpec;
-use super::fill::{is_whole, sampled};
+use super::fill::sampled;
+use super::stored::is_whole;
 use crate::error::Result;
 use crate::volume::Voxels;
 

@@ -3,13 +3,12 @@
 
 mod analytic;
 mod fill;
-mod hardcase;
 mod kind;
 mod noise;
 mod spec;
+mod stored;
 mod vessels;
 
-pub use hardcase::{HardCase, HardVolume, orientation_of};
 pub use kind::PhantomKind;
 pub use spec::PhantomSpec;
 pub use vessels::{MURRAY_EXPONENT, VesselSegment, VesselTree};

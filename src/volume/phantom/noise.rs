@@ -6,7 +6,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 use super::PhantomSpec;
-use super::fill::{Stored, at_fraction, uniform, with_type};
+use super::stored::{Stored, at_fraction, uniform, with_type};
 use crate::error::Result;
 use crate::volume::Voxels;
 

@@ -38,6 +38,59 @@ fn is_spatial(direction: &[f64]) -> bool {
     direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
 }
 
+/// What each axis is, in lower case, where the header says so.
+fn kinds_of(fields: &Fields, dimension: usize) -> Result<Option<Vec<String>>> {
+    let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
+        kinds
+            .split_whitespace()
+            .map(str::to_ascii_lowercase)
+            .collect()
+    });
+    match kinds {
+        Some(kinds) if kinds.len() != dimension => Err(Error::input(format!(
+            "the NRRD header has {} kinds for {dimension} axes",
+            kinds.len()
+        ))),
+        kinds => Ok(kinds),
+    }
+}
+
+/// The direction of each axis, `None` for one that is not space, where the header says so.
+fn directions_of(fields: &Fields, dimension: usize) -> Result<Option<Vec<Option<Vec<f64>>>>> {
+    let directions = fields.get("spacedirections").map(vectors).transpose()?;
+    match directions {
+        Some(directions) if directions.len() != dimension => Err(Error::input(format!(
+            "the NRRD header has {} space directions for {dimension} axes",
+            directions.len()
+        ))),
+        directions => Ok(directions),
+    }
+}
+
+/// Refuses axes whose entries are the components of colours or vectors.
+fn check_components(
+    sizes: &[u64],
+    kinds: Option<&[String]>,
+    has_directions: bool,
+    frame_axis: Option<usize>,
+) -> Result<()> {
+    let kind = |axis: usize| kinds.map_or("", |kinds| &kinds[axis]);
+    if let Some(axis) = (0..sizes.len()).find(|&axis| is_colour(kind(axis))) {
+        return Err(refuse_components(sizes[axis], None));
+    }
+    if let Some(axis) = frame_axis
+        && matches!(sizes[axis], 3 | 4)
+        && (kind(axis).contains("vector") || kind(axis).contains("normal"))
+    {
+        return Err(refuse_components(sizes[axis], None));
+    }
+    // Without any word on its axes, few entries first are components: no series is so thin.
+    if !has_directions && kinds.is_none() && sizes.len() == 4 && matches!(sizes[0], 3 | 4) {
+        return Err(refuse_components(sizes[0], None));
+    }
+    Ok(())
+}
+
 impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
@@ -45,29 +98,8 @@ impl Axes {
             return Err(Error::input(format!("an NRRD array of {dimension} axes")));
         }
         let sizes: Vec<u64> = exactly("sizes", fields.need("sizes")?, dimension)?;
-        let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
-            kinds
-                .split_whitespace()
-                .map(str::to_ascii_lowercase)
-                .collect()
-        });
-        if let Some(kinds) = &kinds
-            && kinds.len() != dimension
-        {
-            return Err(Error::input(format!(
-                "the NRRD header has {} kinds for {dimension} axes",
-                kinds.len()
-            )));
-        }
-        let directions = fields.get("spacedirections").map(vectors).transpose()?;
-        if let Some(directions) = &directions
-            && directions.len() != dimension
-        {
-            return Err(Error::input(format!(
-                "the NRRD header has {} space directions for {dimension} axes",
-                directions.len()
-            )));
-        }
+        let kinds = kinds_of(fields, dimension)?;
+        let directions = directions_of(fields, dimension)?;
 
         let mut space_axes: Vec<usize> = (0..dimension)
             .filter(|&axis| match (&directions, &kinds) {
@@ -94,20 +126,7 @@ impl Axes {
         if space_axes.is_empty() {
             return Err(Error::input("no axis of the NRRD array runs through space"));
         }
-        let kind = |axis: usize| kinds.as_ref().map_or("", |kinds| &kinds[axis]);
-        if let Some(axis) = (0..dimension).find(|&axis| is_colour(kind(axis))) {
-            return Err(refuse_components(sizes[axis], None));
-        }
-        if let Some(axis) = frame_axis
-            && matches!(sizes[axis], 3 | 4)
-            && (kind(axis).contains("vector") || kind(axis).contains("normal"))
-        {
-            return Err(refuse_components(sizes[axis], None));
-        }
-        // Without any word on its axes, few entries first are components: no series is so thin.
-        if directions.is_none() && kinds.is_none() && dimension == 4 && matches!(sizes[0], 3 | 4) {
-            return Err(refuse_components(sizes[0], None));
-        }
+        check_components(&sizes, kinds.as_deref(), directions.is_some(), frame_axis)?;
 
         let kept: Vec<usize> = (0..dimension)
             .filter(|axis| space_axes.contains(axis) || frame_axis == Some(*axis))

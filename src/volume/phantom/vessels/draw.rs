@@ -12,8 +12,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::super::PhantomSpec;
-use super::super::fill::{Stored, at_fraction, uniform, with_type};
 use super::super::noise::add_gaussian;
+use super::super::stored::{Stored, at_fraction, uniform, with_type};
 use super::tree::VesselTree;
 use crate::error::Result;
 use crate::volume::Voxels;

@@ -64,21 +64,55 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
 
     let total_flow = (root_mm / tip_mm).powf(MURRAY_EXPONENT);
     let mut targets = spread(half_mm, total_flow, &mut random);
+    let root = root_bud(spec, half_mm, targets.len(), &mut random);
+    let mut grower = Grower {
+        tip_mm,
+        voxel_mm,
+        half_mm,
+        buds: vec![root],
+        segments: Vec::new(),
+    };
+    while let Some(bud) = grower.buds.pop() {
+        grower.grow(&bud, &mut targets, &mut random);
+    }
+    Ok(VesselTree {
+        dims: spec.dims,
+        spacing_mm: spec.spacing_mm.to_array(),
+        seed: spec.seed,
+        murray_exponent: MURRAY_EXPONENT,
+        segments: grower.segments,
+    })
+}
+
+/// Where the tree begins: it serves all targets.
+fn root_bud(spec: &PhantomSpec, half_mm: DVec3, targets: usize, random: &mut Pcg64) -> Bud {
     let up = upward(spec);
-    let inlet = (uniform_box(&mut random) * 0.2 * (DVec3::ONE - up) - up) * half_mm;
-    let mut buds = vec![Bud {
+    let inlet = (uniform_box(random) * 0.2 * (DVec3::ONE - up) - up) * half_mm;
+    Bud {
         start_mm: inlet,
-        direction: (up + 0.2 * free_axes(half_mm) * uniform_box(&mut random)).normalize(),
-        targets: 0..targets.len(),
+        direction: (up + 0.2 * free_axes(half_mm) * uniform_box(random)).normalize(),
+        targets: 0..targets,
         parent: None,
         generation: 0,
-    }];
-    let mut segments: Vec<VesselSegment> = Vec::new();
-    while let Some(bud) = buds.pop() {
+    }
+}
+
+/// A tree while it grows.
+struct Grower {
+    tip_mm: f64,
+    voxel_mm: f64,
+    half_mm: DVec3,
+    /// Those that have no segment yet.
+    buds: Vec<Bud>,
+    segments: Vec<VesselSegment>,
+}
+
+impl Grower {
+    /// Makes a bud's segment, and the buds of the two branches where it forks.
+    fn grow(&mut self, bud: &Bud, targets: &mut [Target], random: &mut Pcg64) {
         let served = &mut targets[bud.targets.clone()];
-        let flow = total(served);
-        let radius = |flow: f64| tip_mm * flow.cbrt();
-        let fork = (served.len() > 1).then(|| Fork::of(&bud, served, &mut random));
+        let radius_mm = self.tip_mm * total(served).cbrt();
+        let fork = (served.len() > 1).then(|| Fork::of(bud, served, random));
         let (end_mm, end_direction) = match &fork {
             Some(fork) => (fork.p_mm, Some(fork.direction)),
             None => (served[0].p_mm, None),
@@ -89,18 +123,18 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
                 end_mm,
                 start_direction: bud.direction,
                 end_direction,
-                half_mm,
-                step_mm: 1.5 * voxel_mm,
+                half_mm: self.half_mm,
+                step_mm: 1.5 * self.voxel_mm,
             },
-            &mut random,
+            random,
         );
-        let id = segments.len();
+        let id = self.segments.len();
         if let Some(fork) = &fork {
             let first = bud.targets.start;
             let cut = first + fork.cut;
             let shares = [first..cut, cut..bud.targets.end];
             for (share, direction) in shares.into_iter().zip(fork.branches) {
-                buds.push(Bud {
+                self.buds.push(Bud {
                     start_mm: end_mm,
                     direction,
                     targets: share,
@@ -109,12 +143,12 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
                 });
             }
         }
-        segments.push(VesselSegment {
+        self.segments.push(VesselSegment {
             id,
             parent: bud.parent,
             generation: bud.generation,
-            radius_mm: radius(flow),
-            radius_voxels: radius(flow) / voxel_mm,
+            radius_mm,
+            radius_voxels: radius_mm / self.voxel_mm,
             start_mm: bud.start_mm.to_array(),
             end_mm: end_mm.to_array(),
             start_direction: bud.direction.to_array(),
@@ -122,13 +156,6 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
             points_mm: line.points_mm.iter().map(|p| p.to_array()).collect(),
         });
     }
-    Ok(VesselTree {
-        dims: spec.dims,
-        spacing_mm: spec.spacing_mm.to_array(),
-        seed: spec.seed,
-        murray_exponent: MURRAY_EXPONENT,
-        segments,
-    })
 }
 
 /// The root rises along z, as the arteries of the neck do; along y or x in a flat volume.

@@ -1,0 +1,99 @@
+//! A mode of a comparison: what is seen, and the settings in which it is drawn.
+
+use crate::error::Result;
+use crate::lab::measure::built_in;
+use crate::scene::{ErrorBound, Mode, Resolved, SceneOptions, Setting, Subject};
+
+/// A mode, what is seen in it, and the settings in which it is rendered.
+#[derive(Debug, Clone)]
+pub struct ModeSettings {
+    pub mode: Mode,
+    /// The scene that the reference renders.
+    pub resolved: Resolved,
+    pub(super) settings: Vec<(Setting, Resolved)>,
+    /// The cheapest setting that keeps it takes part.
+    pub(super) bound: Option<ErrorBound>,
+}
+
+impl ModeSettings {
+    /// The name of the setting that the options give beside those that are compared.
+    const AS_GIVEN: &str = "as given";
+
+    /// The names of the settings that take part, in their order.
+    pub(super) fn names(&self) -> Vec<String> {
+        let names = self.settings.iter().map(|(setting, _)| setting.name());
+        let mut names: Vec<String> = names.map(str::to_owned).collect();
+        names.extend(self.bound.map(Self::name_of_bound));
+        names
+    }
+
+    /// The name of the setting that a bound chooses.
+    pub(super) fn name_of_bound(bound: ErrorBound) -> String {
+        format!("max-error {bound}")
+    }
+
+    /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
+    /// and how by each of `settings`, which are the built-in ones where there are none.
+    ///
+    /// # Errors
+    /// Usage: the options contradict each other, or a setting does not go with the mode.
+    pub fn new(
+        mode: Mode,
+        base: &SceneOptions,
+        settings: Option<Vec<Setting>>,
+        subject: &Subject,
+    ) -> Result<Self> {
+        let seen = base.of_mode(mode).what();
+        let resolved = seen.checked()?.resolve(subject)?;
+        let settings = match settings {
+            Some(settings) => settings,
+            None => built_in(mode)?,
+        };
+        let mut this = Self {
+            mode,
+            resolved,
+            settings: Vec::new(),
+            bound: None,
+        };
+        for setting in settings {
+            this.add(setting, subject)?;
+        }
+        Ok(this)
+    }
+
+    /// Adds one setting: what `options` says, as far as it means something in the mode, of how rays
+    /// are followed. Nothing where it says nothing.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_given(&mut self, options: &SceneOptions, subject: &Subject) -> Result<()> {
+        let how = options.of_mode(self.mode).how();
+        if how == SceneOptions::default() {
+            return Ok(());
+        }
+        self.add(Setting::new(Self::AS_GIVEN, how)?, subject)
+    }
+
+    /// Adds the setting that a bound chooses.
+    ///
+    /// # Errors
+    /// Usage: the mode has no such metric.
+    pub fn add_bound(&mut self, bound: ErrorBound) -> Result<()> {
+        bound.check(self.mode)?;
+        self.bound = Some(bound);
+        Ok(())
+    }
+
+    /// Adds one setting.
+    ///
+    /// # Errors
+    /// Usage: it does not go with the mode.
+    pub fn add(&mut self, setting: Setting, subject: &Subject) -> Result<()> {
+        let options = setting.over(&self.resolved.options).checked();
+        let resolved = options.and_then(|options| options.resolve(subject));
+        let resolved = resolved
+            .map_err(|error| error.at(format!("{}: setting '{}'", self.mode, setting.name())))?;
+        self.settings.push((setting, resolved));
+        Ok(())
+    }
+}

@@ -1,0 +1,25 @@
+//! The hard cases by kind of difficulty, each with its volumes and its scenes.
+
+mod emission;
+mod grid;
+mod isosurface;
+mod kinds;
+mod rays;
+
+pub use kinds::orientation_of;
+
+use super::HardCase;
+use crate::volume::Geometry;
+
+/// All cases, by number.
+pub(super) const CASES: [&[HardCase]; 4] = [
+    rays::CASES,
+    isosurface::CASES,
+    emission::CASES,
+    kinds::CASES,
+];
+
+/// Spacing 1 mm, origin 0, the world's axes: world and index space are one.
+fn unit() -> Geometry {
+    Geometry::default()
+}

@@ -1,0 +1,114 @@
+//! A setting's picture compared with the reference's, and the time of one frame.
+
+use std::time::Instant;
+
+use crate::error::Result;
+use crate::frame::error::{Figures, Scale, figures};
+use crate::frame::{Frame, Wanted};
+use crate::gpu::PassTime;
+use crate::render::{Renderer, Rendering};
+use crate::scene::{Picture, Scene};
+use crate::volume::Volume;
+
+use super::Counts;
+use super::processor::processor_ms;
+
+/// The planes in which a picture of this kind can be wrong, and the counters. A surface's values
+/// are all the iso value, and a maximum's depth hangs on rounding where the field is flat: neither
+/// is compared.
+pub fn evaluated_planes(picture: &Picture) -> Wanted {
+    let surface = matches!(picture, Picture::Surface { .. });
+    Wanted {
+        display: true,
+        depth: surface,
+        normal: surface,
+        value: matches!(picture, Picture::Projection { .. }),
+        counters: true,
+        kind: true,
+        certificate: false,
+    }
+}
+
+/// The units of a volume's errors.
+pub fn error_scale(volume: &Volume) -> Scale {
+    Scale {
+        smallest_spacing_mm: volume.geometry().smallest_spacing_mm(),
+        range_width: volume.range().width(),
+    }
+}
+
+/// A picture and how wrong it is.
+pub struct Evaluation {
+    pub rendering: Rendering,
+    pub figures: Figures,
+    pub counts: Counts,
+}
+
+/// Renders `scene` with the planes of `reference`'s picture and compares them.
+///
+/// # Errors
+/// As [`Renderer::render`] and [`figures`].
+pub fn evaluate(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    reference: &Frame,
+    scale: Scale,
+) -> Result<Evaluation> {
+    let rendering = renderer.render(scene, evaluated_planes(&scene.picture))?;
+    Ok(Evaluation {
+        figures: figures(reference, &rendering.frame, scale)?,
+        counts: Counts::of(&rendering.frame, &scene.picture),
+        rendering,
+    })
+}
+
+/// How wrong a picture is in some of its pixels, of which `reference` is the reference's
+/// ([`reference::render_pixels`](crate::reference::render_pixels)). SSIM and FLIP, which need
+/// neighbouring pixels, are left out.
+///
+/// # Errors
+/// As [`figures`].
+pub fn evaluate_pixels(
+    reference: &Frame,
+    frame: &Frame,
+    pixels: &[u32],
+    scale: Scale,
+) -> Result<Figures> {
+    Ok(Figures {
+        ssim: None,
+        flip: None,
+        ..figures(reference, &frame.picked(pixels)?, scale)?
+    })
+}
+
+/// What one picture for display took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameTime {
+    /// From the camera set to pixels that the host can read, on the host's clock.
+    pub frame_ms: f64,
+    /// The processor time of all threads of the program that drew it; where the device is the processor
+    /// itself, drawing included. Unknown on some systems.
+    pub processor_ms: Option<f64>,
+    /// From the first launch to the last one's end, on the device's clock.
+    pub render_ms: f64,
+    /// On the device's clock.
+    pub passes: Vec<PassTime>,
+}
+
+/// Renders `scene` for display alone; gradients that it needs precomputed are so beforehand, since
+/// another setting may have taken their place.
+///
+/// # Errors
+/// As [`Renderer::render`].
+pub fn time(renderer: &mut Renderer, scene: &Scene) -> Result<FrameTime> {
+    let wanted = Wanted::DISPLAY;
+    renderer.precompute(scene, wanted)?;
+    let (began, used) = (Instant::now(), processor_ms());
+    let rendering = renderer.render(scene, wanted)?;
+    Ok(FrameTime {
+        frame_ms: began.elapsed().as_secs_f64() * 1e3,
+        processor_ms: used.and_then(|used| Some(processor_ms()? - used)),
+        render_ms: rendering.render_ms,
+        passes: rendering.passes,
+    })
+}

@@ -1,0 +1,197 @@
+//! How far one pixel is off, in the sense of a metric.
+
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Wanted, percentile};
+use crate::reference::{Sight, display};
+use crate::scene::{ErrorBound, ErrorMetric, Tone};
+use crate::volume::Volume;
+
+/// What a pixel shows, as far as a metric looks at it; narrowed to the planes' single precision, as
+/// pictures are compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Display, 0..1.
+    rgb: [f32; 3],
+    /// mm; +∞: no hit.
+    depth: f32,
+    /// Physical.
+    value: f32,
+    /// Whether there is anything.
+    covered: bool,
+}
+
+impl Seen {
+    pub fn by_reference(sight: &Sight, tone: &Tone) -> Self {
+        let [r, g, b, _] = display(sight.color, tone).map(|c| c as f32);
+        Self {
+            rgb: [r, g, b],
+            depth: sight.depth_mm as f32,
+            value: sight.value as f32,
+            covered: sight.color[3] as f32 > 0.0,
+        }
+    }
+
+    /// A pixel of a frame; a plane that was not wanted shows nothing.
+    pub fn in_frame(frame: &Frame, pixel: usize) -> Self {
+        let [r, g, b, _] = frame
+            .display
+            .as_ref()
+            .map_or([0.0; 4], |plane| plane[pixel]);
+        Self {
+            rgb: [r, g, b],
+            depth: (frame.depth.as_ref()).map_or(f32::INFINITY, |plane| plane[pixel]),
+            value: frame.value.as_ref().map_or(0.0, |plane| plane[pixel]),
+            covered: frame.color[pixel][3] > 0.0,
+        }
+    }
+
+    pub fn is_hit(&self) -> bool {
+        self.depth.is_finite()
+    }
+}
+
+/// What a metric makes of all pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Figure {
+    /// The root of the mean.
+    RootMean,
+    /// The greatest.
+    Greatest,
+    /// What 99 of 100 do not exceed.
+    Percentile99,
+    /// The number of pixels that are off over the number of hits.
+    ShareOfHits,
+}
+
+/// A metric in the units of one volume, its bound as what an error must not exceed.
+#[derive(Debug, Clone, Copy)]
+pub struct Deviation {
+    metric: ErrorMetric,
+    /// Of psnr its rmse.
+    limit: f64,
+    /// Of depth the smallest spacing, mm, of value the value range; else 1.
+    unit: f64,
+}
+
+impl Deviation {
+    /// # Errors
+    /// All voxels are equal, so that no value can be a share of their range.
+    pub fn new(bound: ErrorBound, volume: &Volume) -> Result<Self> {
+        let metric = bound.metric();
+        let unit = match metric {
+            ErrorMetric::Depth => volume.geometry().smallest_spacing_mm(),
+            ErrorMetric::Value => volume.range().width(),
+            _ => 1.0,
+        };
+        if !(unit > 0.0 && unit.is_finite()) {
+            return Err(Error::failed(
+                "all voxels are equal: no error can be given as a share of their range",
+            )
+            .hint("bound another error than value"));
+        }
+        let limit = match metric {
+            ErrorMetric::Psnr => 10_f64.powf(-bound.bound() / 20.0),
+            _ => bound.bound(),
+        };
+        Ok(Self {
+            metric,
+            limit,
+            unit,
+        })
+    }
+
+    /// What the figure must not exceed.
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    pub fn figure(&self) -> Figure {
+        match self.metric {
+            ErrorMetric::Rmse | ErrorMetric::Psnr => Figure::RootMean,
+            ErrorMetric::P99 => Figure::Percentile99,
+            ErrorMetric::Missed => Figure::ShareOfHits,
+            ErrorMetric::Max | ErrorMetric::Depth | ErrorMetric::Value => Figure::Greatest,
+        }
+    }
+
+    /// A figure as the user reads it: of psnr in dB.
+    pub fn shown(&self, figure: f64) -> f64 {
+        match self.metric {
+            ErrorMetric::Psnr => -20.0 * figure.log10(),
+            _ => figure,
+        }
+    }
+
+    /// The planes that the metric looks at.
+    pub fn wanted(&self) -> Wanted {
+        Wanted {
+            display: matches!(
+                self.metric,
+                ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr
+            ),
+            depth: matches!(self.metric, ErrorMetric::Depth | ErrorMetric::Missed),
+            value: self.metric == ErrorMetric::Value,
+            ..Wanted::default()
+        }
+    }
+
+    /// The differences of a pixel's channels; of all metrics but colours' one and twice nothing.
+    pub fn channels(&self, reference: &Seen, other: &Seen) -> [f64; 3] {
+        let difference = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs();
+        let one = |off: f64| [off, 0.0, 0.0];
+        match self.metric {
+            ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {
+                [0, 1, 2].map(|c| difference(reference.rgb[c], other.rgb[c]))
+            }
+            ErrorMetric::Depth => one(match (reference.is_hit(), other.is_hit()) {
+                (true, true) => difference(reference.depth, other.depth) / self.unit,
+                (false, false) => 0.0,
+                _ => f64::INFINITY,
+            }),
+            ErrorMetric::Missed => one(f64::from(reference.is_hit() != other.is_hit())),
+            ErrorMetric::Value => one(match (reference.covered, other.covered) {
+                (true, true) => difference(reference.value, other.value) / self.unit,
+                (false, false) => 0.0,
+                _ => f64::INFINITY,
+            }),
+        }
+    }
+
+    /// A pixel's part of the figure: of a root mean the mean square, of a percentile the share of
+    /// channels beyond the limit, else the greatest difference.
+    pub fn part(&self, reference: &Seen, other: &Seen) -> f64 {
+        let channels = self.channels(reference, other);
+        match self.figure() {
+            Figure::RootMean => channels.iter().map(|c| c * c).sum::<f64>() / 3.0,
+            Figure::Percentile99 => {
+                channels.iter().filter(|&&c| c > self.limit).count() as f64 / 3.0
+            }
+            Figure::Greatest | Figure::ShareOfHits => channels.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// The figure of a picture against another of the same size.
+    pub fn between(&self, reference: &Frame, other: &Frame) -> f64 {
+        let pixels = reference.size.pixels();
+        let seen = (0..pixels).map(|at| (Seen::in_frame(reference, at), Seen::in_frame(other, at)));
+        match self.figure() {
+            Figure::RootMean => {
+                let sum: f64 = seen.map(|(a, b)| self.part(&a, &b)).sum();
+                (sum / pixels as f64).sqrt()
+            }
+            Figure::Greatest => seen.map(|(a, b)| self.part(&a, &b)).fold(0.0, f64::max),
+            Figure::Percentile99 => {
+                let mut all: Vec<f64> = seen.flat_map(|(a, b)| self.channels(&a, &b)).collect();
+                percentile(&mut all, 99).unwrap_or(0.0)
+            }
+            Figure::ShareOfHits => {
+                let (mut off, mut hits) = (0.0, 0.0);
+                for (a, b) in seen {
+                    off += self.part(&a, &b);
+                    hits += f64::from(a.is_hit());
+                }
+                if off == 0.0 { 0.0 } else { off / hits }
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The cheapest setting that keeps an error bound (`--max-error`).
+//!
+//! A device renders a whole picture in the time in which the reference casts a few hundred rays. So
+//! every candidate is rendered whole, a small picture of the same view first; the reference's rays
+//! are spent on what the device cannot know (`evidence` says how the two are put together):
+//!
+//! 1. *Screened* in a small picture, of each chain of ever finer candidates from the coarsest on: the
+//!    error against the device's surest picture, until one is within the bound; then the times of
+//!    these, in turn. What is finer takes longer and is not tried before the coarser one fails.
+//! 2. *Evaluated* in the real picture, the fastest first, with an upper confidence limit from random
+//!    tiles of reference rays, until one is within the bound; with it those about as fast, which
+//!    are timed in turn.
+//! 3. *Verified*: the fastest of them (of equals the one of the least error) on fresh tiles, and by
+//!    the reference at the pixels where its error is largest; where the camera moves, elsewhere on its
+//!    path too. What fails is out, and the next is tried.
+//!
+//! Where nothing keeps the bound, the surest setting is taken, and reported as beyond the bound.
+
+mod candidate;
+mod candidates;
+mod deviation;
+mod evidence;
+mod search;
+mod stats;
+mod student;
+mod summary;
+mod tiles;
+
+use std::time::Instant;
+
+pub use candidates::candidates;
+pub use stats::ToleranceStats;
+pub use student::CONFIDENCE;
+
+use crate::error::Result;
+use crate::frame::Wanted;
+use crate::progress::{Progress, UNKNOWN_TOTAL};
+use crate::render::Renderer;
+use crate::scene::{Camera, ErrorBound, Resolved, SceneOptions, Setting, Subject};
+use crate::volume::Volume;
+
+use search::Search;
+
+/// Of the random tiles where nothing is to be repeated with others: the same in every run.
+pub const SEED: u64 = 1;
+
+/// What a setting is chosen for.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub volume: &'a Volume,
+    pub subject: &'a Subject,
+    /// What is seen; of how, at most what is not the bound's to decide
+    /// ([`SceneOptions::undecided`]).
+    pub options: &'a SceneOptions,
+    pub bound: ErrorBound,
+    /// The planes that are rendered afterwards: what the time is taken of.
+    pub wanted: Wanted,
+    /// Of the random tiles.
+    pub seed: u64,
+    /// Other places of the camera where the same setting has to keep the bound: a choice is verified
+    /// at each.
+    pub elsewhere: &'a [Camera],
+}
+
+/// A setting that keeps the bound, or the surest one.
+#[derive(Debug)]
+pub struct Choice {
+    pub bound: ErrorBound,
+    pub setting: Setting,
+    /// The scene under it, and the options that make it.
+    pub resolved: Resolved,
+    /// Whether the upper limit is within the bound, on the tiles of the verification too.
+    pub met: bool,
+    /// The error as verified, in the metric's unit.
+    pub estimate: f64,
+    /// The error is at most this (psnr: at least) with [`CONFIDENCE`].
+    pub upper: f64,
+    pub verified: Verified,
+    /// Every candidate that was tried, in the grid's order.
+    pub tried: Vec<Tried>,
+    pub cost: Cost,
+}
+
+/// Upon what a choice was verified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Verified {
+    /// Places of the camera.
+    pub views: usize,
+    /// Fresh random ones; none where the tiles before were the whole picture.
+    pub tiles: usize,
+    /// The reference's, in these tiles.
+    pub rays: usize,
+}
+
+/// How a candidate did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    pub setting: Setting,
+    /// In the size it was last timed in; of those within the bound.
+    pub ms: Option<f64>,
+    /// As last known, in the metric's unit; infinite for a missed hit's depth.
+    pub error: f64,
+    /// Whether that was in the real picture, against the reference.
+    pub evaluated: bool,
+}
+
+/// What a choice itself has cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Cost {
+    pub ms: f64,
+    /// The reference's.
+    pub rays: u64,
+    /// The device's, whole pictures.
+    pub renderings: usize,
+    /// Of `ms`: building kernels, uploading.
+    pub build_ms: f64,
+    pub upload_ms: f64,
+    pub uploaded_bytes: u64,
+}
+
+/// Chooses the cheapest setting of [`candidates`] that keeps the bound.
+///
+/// The choice depends on how long candidates take, and so on the machine and its load; the
+/// pictures of each setting do not.
+///
+/// # Errors
+/// Usage: the mode has no such metric, the options contradict each other. The device fails.
+pub fn choose(task: &Task, renderer: &mut Renderer, progress: &dyn Progress) -> Result<Choice> {
+    let began = Instant::now();
+    let search = Search::new(task, renderer)?;
+    progress.begin("choosing how", UNKNOWN_TOTAL);
+    let mut choice = search.run()?;
+    progress.end();
+    choice.cost.ms = began.elapsed().as_secs_f64() * 1e3;
+    Ok(choice)
+}

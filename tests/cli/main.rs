@@ -1,0 +1,14 @@
+//! The program from outside.
+
+#[path = "../cli_place/mod.rs"]
+mod cli_place;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod cli_device;
+mod cli_files;
+mod cli_flags;
+mod cli_hardcase;
+mod cli_info;
+mod cli_limits;
+mod cli_program;

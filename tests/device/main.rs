@@ -1,0 +1,19 @@
+//! What a device renders, against the reference and against itself.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod agreement;
+mod clip_planes;
+mod edge_scenes;
+mod exact;
+mod gradients;
+mod homogeneity;
+mod invariance;
+mod metamorphic;
+mod quadrature;
+mod refinement;
+mod sampling_alone;
+mod termination;
+mod voxel_images;

@@ -1,0 +1,215 @@
+//! The adaptive rule keeps its bound: against the double-precision reference, under transfer
+//! functions that are steep, spiked, stepped or next to opaque, on phantoms and on real volumes where
+//! `ANGIORAY_DATA` names their folder. `cargo nextest run --test device --no-capture quadrature:: | grep '|'`
+//! prints how many pixels do.
+
+use std::path::PathBuf;
+
+use angioray::extent::Dims;
+use angioray::frame::Frame;
+use angioray::gpu::Device;
+use angioray::progress::Silent;
+use angioray::scene::{
+    Emission, Phong, Picture, Quadrature, QuadratureMethod, Scene, TransferFunction,
+};
+use angioray::volume::{PhantomKind, PhantomSpec, ReadOptions, Volume, phantom, read};
+
+use super::knot;
+use crate::common::{self, on_device, on_reference};
+
+const SIZE_PX: u32 = 64;
+/// The least share of pixels within the bound.
+const LEAST: f64 = 0.999;
+const BOUNDS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+
+const BLUE: [f64; 3] = [0.1, 0.2, 0.9];
+const WARM: [f64; 3] = [0.9, 0.7, 0.1];
+
+/// Names and points: share of the value range, colour, opacity.
+type Points = Vec<(f64, [f64; 3], f64)>;
+
+fn hard() -> Vec<(&'static str, Points)> {
+    let stairs = (1..8).flat_map(|i| {
+        let at = 0.1 * f64::from(i);
+        let of = |i: i32| (if i % 2 == 0 { BLUE } else { WARM }, 0.05 * f64::from(i));
+        let (below, above) = (of(i - 1), of(i));
+        [(at, below.0, below.1), (at, above.0, above.1)]
+    });
+    vec![
+        ("smooth", vec![(0.1, BLUE, 0.0), (0.9, WARM, 0.6)]),
+        (
+            "steep",
+            vec![(0.3, BLUE, 0.0), (0.31, WARM, 0.7), (1.0, BLUE, 0.8)],
+        ),
+        (
+            "spike",
+            vec![(0.35, WARM, 0.0), (0.353, WARM, 0.95), (0.356, BLUE, 0.0)],
+        ),
+        ("stairs", stairs.collect()),
+        ("opaque", vec![(0.2, BLUE, 0.0), (0.4, WARM, 1.0)]),
+    ]
+}
+
+fn transfer(points: &Points, volume: &Volume) -> TransferFunction {
+    let range = volume.range();
+    let knots = points
+        .iter()
+        .map(|&(at, color, opacity)| knot(range.at(at), color, opacity));
+    let unit_mm = 2.0 * volume.geometry().smallest_spacing_mm();
+    TransferFunction::new(knots.collect(), unit_mm).unwrap()
+}
+
+/// The share of pixels of which no channel is off by more than `bound`, and the largest error.
+fn within(truth: &Frame, frame: &Frame, bound: f64) -> (f64, f64) {
+    let pixels = truth.color.iter().zip(&frame.color);
+    let error = |(a, b): (&[f32; 4], &[f32; 4])| {
+        (0..4).fold(0.0, |most, c| {
+            f64::max(most, f64::from((a[c] - b[c]).abs()))
+        })
+    };
+    let errors: Vec<f64> = pixels.map(error).collect();
+    let kept = errors.iter().filter(|&&e| e <= bound).count();
+    let most = errors.iter().fold(0.0, |most, &e| f64::max(most, e));
+    (kept as f64 / errors.len() as f64, most)
+}
+
+fn scene(volume: &Volume, emission: Emission) -> Scene {
+    common::scene(volume, SIZE_PX, Picture::Emission(emission))
+}
+
+fn samples(frame: &Frame) -> u64 {
+    frame.steps.iter().flatten().map(|&n| u64::from(n)).sum()
+}
+
+fn judge(name: &str, volume: &Volume, phong: Option<Phong>) {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let mut broken = 0;
+    let mut wrong = Vec::new();
+    for (shape, points) in hard() {
+        broken += usize::from(judge_one(
+            &device,
+            name,
+            volume,
+            (shape, &points),
+            phong,
+            &mut wrong,
+        ));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(broken >= 2, "{name}: fixed steps keep the bound too");
+}
+
+/// Every bound under one transfer function; whether fixed steps break that of 1e-3.
+fn judge_one(
+    device: &Device,
+    name: &str,
+    volume: &Volume,
+    (shape, points): (&str, &Points),
+    phong: Option<Phong>,
+    wrong: &mut Vec<String>,
+) -> bool {
+    let emission = Emission {
+        phong,
+        ..Emission::of(transfer(points, volume))
+    };
+    let adaptive = BOUNDS.map(|bound| Emission {
+        quadrature: Quadrature {
+            method: QuadratureMethod::Adaptive,
+            bound,
+        },
+        ..emission.clone()
+    });
+    let mut scenes: Vec<Scene> = adaptive.map(|e| scene(volume, e)).to_vec();
+    scenes.push(scene(volume, emission));
+    let truth = on_reference(volume, &scenes[0]);
+    let frames = on_device(device, volume, &scenes);
+    let (fixed, adaptive) = frames.split_last().unwrap();
+    let mut row = format!("| {name} | {shape} |");
+    for (frame, bound) in adaptive.iter().zip(BOUNDS) {
+        let (share, most) = within(&truth, frame, bound);
+        row.push_str(&format!(
+            " {:.2} % {most:.0e} {} |",
+            100.0 * share,
+            samples(frame)
+        ));
+        if share < LEAST {
+            wrong.push(format!(
+                "{name} {shape} {bound}: {share} of the pixels, {most}"
+            ));
+        }
+    }
+    let (share, most) = within(&truth, fixed, 1e-3);
+    println!(
+        "{row} {:.2} % {most:.0e} {} |",
+        100.0 * share,
+        samples(fixed)
+    );
+    share < LEAST
+}
+
+fn judge_phantom(kind: PhantomKind, size: u64) {
+    let spec = PhantomSpec::new(kind, Dims::new([size; 3]).unwrap());
+    judge(kind.name(), &phantom(&spec).unwrap().volume, None);
+}
+
+fn judge_real(name: &str, file: &str) {
+    let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
+        eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");
+        return;
+    };
+    let path = folder.join(file);
+    if !path.exists() {
+        eprintln!("skipped: there is no {}", path.display());
+        return;
+    }
+    let mut options = ReadOptions::default();
+    if file.ends_with(".raw.gz") {
+        options.raw.size = Some("256x256x256".parse().unwrap());
+        options.raw.element = Some("u8".parse().unwrap());
+    }
+    judge(name, &read(&path, &options, &Silent).unwrap(), None);
+}
+
+#[test]
+fn bound_on_noise() {
+    judge_phantom(PhantomKind::Noise, 24);
+}
+
+#[test]
+fn bound_on_vessels() {
+    judge_phantom(PhantomKind::Vessels, 64);
+}
+
+#[test]
+fn bound_on_a_gaussian() {
+    judge_phantom(PhantomKind::Blob, 40);
+}
+
+#[test]
+fn bound_on_marschner_lobb() {
+    judge_phantom(PhantomKind::MarschnerLobb, 41);
+}
+
+#[test]
+fn bound_with_shading() {
+    let spec = PhantomSpec::new(PhantomKind::Vessels, Dims::new([48; 3]).unwrap());
+    let volume = phantom(&spec).unwrap().volume;
+    judge("vessels, phong", &volume, Some(Phong::default()));
+}
+
+#[test]
+fn bound_on_a_real_aneurism() {
+    judge_real("aneurism", "aneurism_toxi/aneurism.raw.gz");
+}
+
+#[test]
+fn bound_on_real_ct_avm() {
+    judge_real("CT_AVM", "niivue_CT_AVM/CT_AVM.nii.gz");
+}
+
+#[test]
+fn bound_on_real_chris_mra() {
+    judge_real("chris_MRA", "niivue_chris_MRA/chris_MRA.nii.gz");
+}

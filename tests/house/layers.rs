@@ -1,0 +1,190 @@
+//! No layer reaches up: every `crate::` path in `src` against ARCHITECTURE.md's table.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const GROUND: &[&str] = &[
+    "abrupt", "crash", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
+];
+
+/// The instrument, from volume to picture.
+const INSTRUMENT: &[&str] = &[
+    "volume",
+    "scene",
+    "frame",
+    "gpu",
+    "octree",
+    "reference",
+    "render",
+];
+
+/// The ground floor of the lab: what measures with the instrument.
+const MEASURE: &[&str] = &["lab::measure", "lab::report"];
+
+/// A module and the modules, beside the ground floor's, that it may use: lists of them. The parts of
+/// the lab are modules of their own here.
+const MAY_USE: &[(&str, &[&[&str]])] = &[
+    ("abrupt", &[]),
+    ("crash", &[]),
+    ("error", &[]),
+    ("extent", &[]),
+    ("input", &[]),
+    ("kept", &[]),
+    ("memory", &[]),
+    ("output", &[]),
+    ("progress", &[]),
+    ("stop", &[]),
+    ("volume", &[]),
+    ("scene", &[]),
+    ("frame", &[]),
+    ("gpu", &[]),
+    ("octree", &[&["volume"]]),
+    ("reference", &[&["volume", "scene", "frame"]]),
+    ("batch", &[&["volume", "frame"]]),
+    ("render", &[&["volume", "scene", "frame", "gpu", "octree"]]),
+    ("lab::report", &[]),
+    ("lab::hardcases", &[&["volume", "scene"]]),
+    ("lab::measure", &[INSTRUMENT]),
+    ("lab::tolerance", &[INSTRUMENT, MEASURE]),
+    ("lab::bench", &[INSTRUMENT, MEASURE, &["lab::tolerance"]]),
+    ("lab::compare", &[INSTRUMENT, MEASURE, &["lab::tolerance"]]),
+    (
+        "cli",
+        &[
+            INSTRUMENT,
+            MEASURE,
+            &[
+                "lab::hardcases",
+                "lab::tolerance",
+                "lab::bench",
+                "lab::compare",
+                "batch",
+            ],
+        ],
+    ),
+];
+
+fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            rust_files(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The top-level modules that a source names by a `crate::` path; macros and re-exports of the
+/// crate's root (`crate::Error`, `crate::with_voxels!`) are not modules.
+fn modules_named(source: &str) -> Vec<String> {
+    let mut named = Vec::new();
+    for (at, _) in source.match_indices("crate::") {
+        if source[..at].ends_with('$') {
+            continue;
+        }
+        let rest = &source[at + "crate::".len()..];
+        if let Some(list) = rest.strip_prefix('{') {
+            let list = list.split('}').next().unwrap();
+            named.extend(
+                list.split(',')
+                    .filter_map(|item| item.split("::").next())
+                    .map(str::to_owned),
+            );
+        } else {
+            let mut names = rest.split("::").map(|part| {
+                let mut words = part.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+                words.next().unwrap()
+            });
+            named.push(match (names.next().unwrap(), names.next()) {
+                ("lab", Some(part)) => format!("lab::{part}"),
+                (module, _) => module.to_owned(),
+            });
+        }
+    }
+    named
+        .into_iter()
+        .map(|name| name.trim().to_owned())
+        .filter(|name| MAY_USE.iter().any(|(module, _)| module == name))
+        .collect()
+}
+
+/// `module uses other`, for each use that the table does not allow.
+fn violations(module: &str, source: &str) -> Vec<String> {
+    let (_, allowed) = MAY_USE
+        .iter()
+        .find(|(name, _)| *name == module)
+        .unwrap_or_else(|| panic!("the module {module} has no layer"));
+    modules_named(source)
+        .into_iter()
+        .filter(|used| {
+            let is_allowed = |used: &str| allowed.iter().any(|list| list.contains(&used));
+            used != module && !GROUND.contains(&used.as_str()) && !is_allowed(used)
+        })
+        .map(|used| format!("{module} uses {used}"))
+        .collect()
+}
+
+/// The module in the table that a file below `src` is part of; none for `lib.rs`, `main.rs` and the
+/// lab's list of its parts.
+fn module_of(path: &Path) -> Option<String> {
+    let stem = |part: &std::ffi::OsStr| {
+        let stem = Path::new(part).file_stem().unwrap();
+        stem.to_str().unwrap().to_owned()
+    };
+    let mut parts = path.iter().map(stem);
+    let module = parts.next().unwrap();
+    match (module.as_str(), parts.next().as_deref()) {
+        ("lib" | "main", _) | ("lab", Some("mod")) => None,
+        ("lab", Some(part)) => Some(format!("lab::{part}")),
+        _ => Some(module),
+    }
+}
+
+#[test]
+fn no_layer_reaches_up() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    rust_files(&src, &mut files);
+    let mut checked = 0;
+    for path in files {
+        let Some(module) = module_of(path.strip_prefix(&src).unwrap()) else {
+            continue;
+        };
+        let found = violations(&module, &fs::read_to_string(&path).unwrap());
+        assert!(found.is_empty(), "{}: {found:?}", path.display());
+        checked += 1;
+    }
+    assert!(checked > 40, "only {checked} files were found");
+}
+
+#[test]
+fn the_check_sees_a_layer_that_reaches_up() {
+    assert_eq!(
+        violations("gpu", "use crate::volume::Volume;"),
+        ["gpu uses volume"]
+    );
+    assert_eq!(
+        violations("reference", "fn f(o: &crate::octree::Octree) {}"),
+        ["reference uses octree"]
+    );
+    assert_eq!(
+        violations("scene", "use crate::{error::Error, volume::Volume};"),
+        ["scene uses volume"]
+    );
+    assert_eq!(
+        violations("lab::measure", "use crate::lab::bench::Bench;"),
+        ["lab::measure uses lab::bench"]
+    );
+    assert_eq!(
+        violations("render", "use crate::lab::measure::time;"),
+        ["render uses lab::measure"]
+    );
+    assert!(
+        violations(
+            "render",
+            "use crate::octree::Octree; use crate::error::Result;"
+        )
+        .is_empty()
+    );
+}

@@ -1,0 +1,186 @@
+//! Drivers that fail or never end while they build: the program says so, and can be stopped.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use angioray::extent::ImageSize;
+use angioray::gpu::{Buffer, Pass, Timings, output};
+use angioray::octree::Leaf;
+use angioray::render::{Lanes, Variant};
+use angioray::scene::{Filter, Storage};
+use angioray::volume::VoxelType;
+
+use super::{Place, common};
+
+/// Whether the device under test is PoCL's, which links what it builds by `ld`.
+fn links() -> bool {
+    common::device().is_some_and(|device| device.info().platform.contains("Portable Computing"))
+}
+
+/// A folder of programs with `ld` as this script; without one where there is none.
+fn programs(place: &Place, ld: Option<&str>) -> std::path::PathBuf {
+    let folder = place.path("programs");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir(&folder).unwrap();
+    if let Some(script) = ld {
+        use std::os::unix::fs::PermissionsExt;
+        let path = folder.join("ld");
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    folder
+}
+
+#[cfg(unix)]
+#[test]
+fn a_driver_that_ends_while_it_builds_is_reported() {
+    let Some(place) = Place::new() else { return };
+    if !links() {
+        return common::skip("this driver needs no 'ld'");
+    }
+    let without = |command: &mut Command, path: &Path| command.env("PATH", path).output().unwrap();
+    for (ld, words) in [
+        (None, "install binutils"),
+        (Some("echo out of luck >&2; exit 3"), "out of luck"),
+    ] {
+        let output = without(&mut place.simple_command(), &programs(&place, ld));
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(74), "{told}");
+        assert_eq!(
+            told.lines()
+                .filter(|line| line.starts_with("error: "))
+                .count(),
+            1,
+            "{told}"
+        );
+        for part in ["the driver of '", "kernels/pass/", "SIGABRT", words] {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+        assert!(!place.path("picture.png").exists());
+        assert_eq!(place.kept().len(), 0);
+    }
+    // The control: with the linker all goes well. And what is kept needs none: nothing is left for the
+    // first launch to build.
+    let own = place.rendered(&mut place.simple_command());
+    let output = without(&mut place.simple_command(), &programs(&place, None));
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(fs::read(place.path("picture.png")).unwrap(), own);
+}
+
+#[cfg(unix)]
+#[test]
+fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
+    let Some(place) = Place::new() else { return };
+    if !links() {
+        return common::skip("this driver needs no 'ld'");
+    }
+    // A linker that never ends: without being stopped, neither does the test.
+    let path = programs(
+        &place,
+        Some(&format!(
+            "echo $$ >> {}; exec sleep 1000",
+            place.path("linkers").display()
+        )),
+    );
+    let path = format!("{}:{}", path.display(), std::env::var("PATH").unwrap());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_angioray"))
+        .args("orbit --frames 2 --iso 50% --size 24x24 --lanes 1".split(' '))
+        .args(place.device.split_whitespace())
+        .arg(place.path("sphere.nrrd"))
+        .arg("-o")
+        .arg(place.path("frames/%d.png"))
+        .env("ANGIORAY_KERNEL_CACHE", place.path("kept"))
+        .env("PATH", path)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("building kernels 0 of ") {
+        line.clear();
+        assert!(told.read_line(&mut line).unwrap() > 0, "it ended by itself");
+    }
+    while !place.path("linkers").exists() {
+        assert_eq!(child.try_wait().unwrap(), None, "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let pid = child.id().to_string();
+    let sent = Command::new("kill").args(["-TERM", &pid]).status();
+    assert!(sent.unwrap().success());
+    let status = child.wait().unwrap();
+    let mut rest = String::new();
+    told.read_to_string(&mut rest).unwrap();
+    assert_eq!(status.code(), Some(75), "{rest}");
+    assert!(
+        rest.contains("error: stopped early: 0 of 2 frames"),
+        "{rest}"
+    );
+    assert_eq!(place.kept().len(), 0);
+    // Nothing that it started is left: neither builders nor their linkers.
+    let linkers = fs::read_to_string(place.path("linkers")).unwrap();
+    for pid in linkers.split_whitespace() {
+        let command = fs::read_to_string(format!("/proc/{pid}/cmdline"));
+        assert!(
+            !command.is_ok_and(|command| command.contains("sleep")),
+            "{pid}"
+        );
+    }
+}
+
+#[test]
+fn all_is_built_before_the_first_launch() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let variant = Variant {
+        voxel: VoxelType::U8,
+        filter: Filter::Linear,
+        leaf: Leaf::default(),
+        wide_index: false,
+        lanes: Lanes::ONE,
+        storage: Storage::Buffer,
+    };
+    // Constants that no program was ever built with.
+    let unique = |place: u32| {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+        let defines = variant
+            .defines()
+            .with("NEVER_BEFORE", now.unwrap().as_nanos());
+        let defines = defines.with("PLACE", place);
+        std::sync::Arc::new(Pass::new(
+            "test",
+            "abi",
+            defines,
+            vec![output::<u32>("layout")],
+        ))
+    };
+    let passes = [unique(0), unique(1)];
+    let mut layout = Buffer::<u32>::new(&device, "layout", 4096).unwrap();
+    let mut launched = |passes: &[std::sync::Arc<Pass>]| {
+        let mut timings = Timings::default();
+        for pass in passes {
+            let launch = pass.launch(&device).output(&mut layout);
+            launch
+                .run(ImageSize::new(1, 1).unwrap(), Some([1, 1]), &mut timings)
+                .unwrap();
+        }
+        timings
+    };
+    assert_eq!(device.built_kernels(), 0);
+    // A pass that is launched twice is built once.
+    let timings = launched(&[passes[0].clone(), passes[1].clone(), passes[0].clone()]);
+    assert_eq!(device.built_kernels(), 0);
+    assert!(timings.build(&device).unwrap() > 0.0);
+    assert_eq!(device.built_kernels(), 2);
+    assert_eq!(timings.build(&device), Ok(0.0));
+    let (times, _) = timings.finish(&device).unwrap();
+    assert_eq!(times.len(), 3);
+    assert_eq!(device.built_kernels(), 2);
+    launched(&passes).finish(&device).unwrap();
+    assert_eq!(device.built_kernels(), 2);
+    // The control: what was not asked for is built at the end.
+    launched(&[unique(2)]).finish(&device).unwrap();
+    assert_eq!(device.built_kernels(), 3);
+}

@@ -5,7 +5,6 @@
 use crate::cli_place;
 use crate::common;
 
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 

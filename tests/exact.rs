@@ -9,7 +9,7 @@ mod common;
 use angioray::bench::{self, Met, Verdict};
 use angioray::extent::Dims;
 use angioray::frame::error::{depth_error, value_error};
-use angioray::frame::{Certificate, Frame, Kind, Wanted};
+use angioray::frame::{CERTIFICATE, Certificate, DEPTH, Frame, KIND, Kind, VALUE, Wanted};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
@@ -90,10 +90,10 @@ impl Judge<'_> {
         let voxel_mm = self.volume.geometry().smallest_spacing_mm();
         let error = depth_error(&truth, &frame, voxel_mm).unwrap();
         let depths = truth
-            .depth
-            .iter()
+            .plane(DEPTH)
+            .into_iter()
             .flatten()
-            .zip(frame.depth.iter().flatten());
+            .zip(frame.plane(DEPTH).into_iter().flatten());
         let mut differences: Vec<f64> = depths
             .filter(|(a, b)| a.is_finite() && b.is_finite())
             .map(|(&a, &b)| (f64::from(a) - f64::from(b)).abs() / voxel_mm)
@@ -114,9 +114,9 @@ impl Judge<'_> {
     fn excuse_borderline(&self, scene: &Scene, truth: &Frame, frame: &mut Frame) {
         let judge = bench::Judge::new(self.volume, scene).unwrap();
         let close_mm = 1e-4 * self.volume.geometry().smallest_spacing_mm();
-        let kinds = frame.kind.as_ref().unwrap();
-        let depths = frame.depth.as_mut().unwrap();
-        for (pixel, &true_mm) in truth.depth.as_ref().unwrap().iter().enumerate() {
+        let kinds = frame.plane(KIND).unwrap().to_vec();
+        let depths = frame.plane_mut(DEPTH).unwrap();
+        for (pixel, &true_mm) in truth.plane(DEPTH).unwrap().iter().enumerate() {
             let depth_mm = depths[pixel];
             if true_mm == depth_mm || f64::from((true_mm - depth_mm).abs()) <= close_mm {
                 continue;
@@ -168,8 +168,8 @@ impl Judge<'_> {
         let (truth, mut frame) = self.both(&scene);
         let local = matches!(of, Projection::LocalMaximum { .. });
         if local && method == SamplingMethod::Exact {
-            let truths = truth.value.as_ref().unwrap();
-            let own = frame.value.as_mut().unwrap();
+            let truths = truth.plane(VALUE).unwrap();
+            let own = frame.plane_mut(VALUE).unwrap();
             let close = VALUE_MAX * range.width();
             self.excuse_dips(&scene, truths, own, close);
             let wrong = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > close;
@@ -180,7 +180,7 @@ impl Judge<'_> {
                 .count();
             assert!(pixels <= SHALLOW_DIPS, "{}: {pixels} pixels", self.name);
             if pixels > 0 {
-                frame.value.clone_from(&truth.value);
+                own.copy_from_slice(truths);
             }
         }
         let error = value_error(&truth, &frame, range.width()).unwrap();
@@ -197,9 +197,9 @@ fn ray(scene: &Scene, pixel: usize) -> Ray {
 
 /// Pixels whose certificate says what is not so.
 fn disproven(truth: &Frame, frame: &Frame) -> usize {
-    let certificates = frame.certificate.iter().flatten();
+    let certificates = frame.plane(CERTIFICATE).into_iter().flatten();
     certificates
-        .zip(truth.certificate.iter().flatten())
+        .zip(truth.plane(CERTIFICATE).into_iter().flatten())
         .filter(|&(&own, &true_one)| own != Certificate::Undecided as u32 && own != true_one)
         .count()
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use angioray::extent::ImageSize;
-use angioray::gpu::{Buffer, Pass, Timings, output};
+use angioray::gpu::{Args, Buffer, Pass, Timings};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant, struct_layouts};
 use angioray::scene::{Filter, Storage};
@@ -22,19 +22,16 @@ fn every_struct_has_the_same_layout_on_the_device() {
         lanes: Lanes::ONE,
         storage: Storage::Buffer,
     };
-    let signature = vec![output::<u32>("layout")];
-    let pass = Pass::new("test", "abi", variant.defines(), signature);
-    let pass = pass.built(&device).unwrap();
+    let pass = Pass::new("test", "abi", variant.defines(), [1, 1]);
     let host: Vec<u32> = struct_layouts()
         .into_iter()
         .flat_map(|(_, layout)| layout)
         .collect();
     let mut layout = Buffer::upload(&device, "layout", &vec![u32::MAX; host.len() + 1]).unwrap();
     let mut timings = Timings::default();
-    pass.launch(&device)
-        .output(&mut layout)
-        .run(ImageSize::new(1, 1).unwrap(), Some([1, 1]), &mut timings)
-        .unwrap();
+    let args = Args::new().write("layout", &mut layout);
+    let size = ImageSize::new(1, 1).unwrap();
+    timings.add(pass.launch(&device, args, size, Some([1, 1])).unwrap());
     timings.finish(&device).unwrap();
     let on_device = layout.download(&device).unwrap();
     let mut rest = &on_device[..];

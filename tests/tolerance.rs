@@ -6,7 +6,7 @@ mod common;
 
 use angioray::extent::Dims;
 use angioray::frame::error::{color_error, depth_error, value_error};
-use angioray::frame::{Frame, Wanted, read_metadata};
+use angioray::frame::{Frame, Layer, Wanted, read_metadata};
 use angioray::octree::Octree;
 use angioray::progress::Silent;
 use angioray::reference;
@@ -16,15 +16,7 @@ use angioray::tolerance::{Choice, Task, candidates, choose};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use cli_place::{Place, stderr};
 
-const WANTED: Wanted = Wanted {
-    display: true,
-    depth: true,
-    normal: false,
-    value: true,
-    counters: false,
-    kind: false,
-    certificate: false,
-};
+const WANTED: Wanted = Wanted::DISPLAY.with([Layer::Depth, Layer::Value]);
 
 fn vessels() -> Volume {
     let spec = PhantomSpec::new(PhantomKind::Vessels, Dims::new([40; 3]).unwrap());
@@ -83,10 +75,7 @@ fn task<'a>(
         subject,
         options,
         bound: bound.parse().unwrap(),
-        wanted: Wanted {
-            display: true,
-            ..Wanted::default()
-        },
+        wanted: Wanted::DISPLAY,
         seed: 5,
         elsewhere: &[],
     }

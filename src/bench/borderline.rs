@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{Judge, Met, Verdict};
 use crate::error::Result;
-use crate::frame::{Frame, Kind};
+use crate::frame::{DEPTH, Frame, Kind};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
@@ -41,7 +41,7 @@ impl<'a> Borderline<'a> {
     /// Gives those pixels of a frame whose depths differ from the truth's and are
     /// [`Verdict::Borderline`] the truth's depth; says how many.
     pub fn excuse(&mut self, truth: &Frame, frame: &mut Frame) -> usize {
-        let (Some(truths), Some(depths)) = (&truth.depth, &mut frame.depth) else {
+        let (Some(truths), Some(depths)) = (truth.plane(DEPTH), frame.plane_mut(DEPTH)) else {
             return 0;
         };
         let differing: Vec<(usize, u32)> = (0..truths.len())

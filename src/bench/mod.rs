@@ -5,7 +5,6 @@
 
 pub mod aimed;
 mod borderline;
-mod compare;
 mod conduct;
 pub mod convergence;
 mod draws;

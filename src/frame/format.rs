@@ -5,7 +5,11 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{Layer, webp};
+use super::layer::Layer;
+use super::webp;
+
+/// The colour's channels in formats of linear light, which is premultiplied.
+pub(super) const COLOR: [&str; 4] = ["R", "G", "B", "A"];
 
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,7 +165,7 @@ pub fn channels(encoding: &Encoding) -> Vec<String> {
     let color: &[&str] = if encoding.format.is_display() {
         &["R", "G", "B"]
     } else {
-        &super::channel::COLOR
+        &COLOR
     };
     let layers = encoding.layers_in_order().flat_map(Layer::channels);
     color

@@ -8,7 +8,9 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::Result;
 
-use super::{Frame, quantize, write};
+use super::contents::Frame;
+use super::encoder_error::encoder_error;
+use super::quantize;
 
 /// The header has 14 bits for a side; most decoders stop one short of 2^14.
 pub(super) const MAX_SIDE_PX: u32 = 16_383;
@@ -22,5 +24,5 @@ pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result
             height,
             ExtendedColorType::Rgb8,
         )
-        .map_err(|error| write::image_failed(path, error))
+        .map_err(|error| encoder_error(path, error))
 }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use image::ImageError;
-
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
 use super::channel::channels_of;
-use super::{Encoding, Format, Frame, exr, jpeg, npy, png, webp};
+use super::contents::Frame;
+use super::format::{Encoding, Format};
+use super::{exr, jpeg, npy, png, webp};
 
 /// Writes a picture, whole or not at all. `metadata` are keys and texts; PNG keeps them as iTXt
 /// chunks and EXR as string attributes ([`super::read_metadata`] reads both), the other formats
@@ -42,11 +42,4 @@ pub fn write(
         Format::Npy => npy::encode(out, frame.size, &channels_of(frame, encoding)?)
             .map_err(|cause| Error::writing(path, "write", &cause)),
     })
-}
-
-pub(super) fn image_failed(path: &Path, error: ImageError) -> Error {
-    match error {
-        ImageError::IoError(cause) => Error::writing(path, "write", &cause),
-        other => Error::resource(format!("{}: cannot write: {other}", path.display())),
-    }
 }

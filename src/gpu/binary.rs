@@ -12,7 +12,9 @@ use ocl::core::{self, Program, ProgramInfo, ProgramInfoResult};
 use crate::error::{Error, Result};
 use crate::kept::{self, Kept};
 
-use super::{DeviceInfo, Parameter, process};
+use super::device::DeviceInfo;
+use super::process;
+use super::signature::Parameter;
 
 /// Names the folder of built programs, or turns it off.
 const FOLDER: &str = "ANGIORAY_KERNEL_CACHE";
@@ -106,7 +108,7 @@ impl Binaries {
         }
         for parameter in signature {
             add(parameter.name);
-            add(&parameter.type_name);
+            add(&parameter.of.to_string());
         }
         Some(kept.path(&hasher))
     }

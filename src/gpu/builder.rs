@@ -18,8 +18,9 @@ use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 use crate::stop;
 
+use super::device::{Device, DeviceInfo};
 use super::process::{Arranged, POCL_FOLDER};
-use super::{Device, DeviceInfo, binary, program};
+use super::{binary, program};
 
 /// The first argument of a builder; the second is its folder.
 const ARGUMENT: &str = "--build-kernels";

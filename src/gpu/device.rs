@@ -15,8 +15,9 @@ use crate::error::{Error, Result};
 use crate::progress::{Progress, Silent};
 
 use super::binary::Binaries;
+use super::loader;
 use super::process::{self, Arranged};
-use super::{device_error, loader};
+use super::status::device_error;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceKind {

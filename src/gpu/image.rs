@@ -9,8 +9,9 @@ use ocl::core::{
 
 use crate::error::{Error, Result};
 
+use super::device::Device;
 use super::memory::check_allocation;
-use super::{Device, device_error};
+use super::status::device_error;
 
 /// What a texel holds. Kernels read all of them as floats: integers as shares of their type's largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

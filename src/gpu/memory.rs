@@ -8,7 +8,9 @@ use ocl::core::{self, Event, Mem, MemFlags};
 use crate::error::{Error, Result};
 use crate::memory;
 
-use super::{Device, Element, device_error};
+use super::device::Device;
+use super::element::Element;
+use super::status::device_error;
 
 /// Whether the device gives so many bytes in one piece.
 pub(super) fn check_allocation(device: &Device, what: &str, bytes: usize) -> Result<()> {

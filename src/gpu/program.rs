@@ -14,9 +14,11 @@ use crate::kept::asked_for;
 use crate::progress::Stage;
 
 use super::builder::{self, Answer, Builders, Request};
+use super::device::Device;
 use super::process::{self, Arranged};
-use super::signature::{self, Parameter};
-use super::{Device, binary, device_error, source};
+use super::signature::{self, Parameter, as_texts};
+use super::status::device_error;
+use super::{binary, source};
 
 /// The constants of a built program, `-D NAME=VALUE`, in the order given. Two equal lists are the
 /// same program.
@@ -194,7 +196,7 @@ impl<'a> Plan<'a> {
         } = self.order;
         let program = compiled(device, &self.source, &self.options, path)?;
         let kernel = kernel_of(&program, name)?;
-        signature::check(&kernel, name, signature.iter().map(Parameter::as_told))?;
+        signature::check(&kernel, name, &as_texts(signature))?;
         if let Some(binary) = binary::of(&program) {
             self.keep(&binary);
         }
@@ -202,7 +204,6 @@ impl<'a> Plan<'a> {
     }
 
     fn request(&self, device: &Device) -> Request {
-        let signature = self.order.signature.iter().map(Parameter::as_told);
         Request {
             device: device.info().id,
             identity: builder::identity(device.info()),
@@ -210,9 +211,7 @@ impl<'a> Plan<'a> {
             source: self.source.clone(),
             options: self.options.to_string_lossy().into_owned(),
             kernel: self.order.name.to_owned(),
-            signature: signature
-                .map(|(a, b)| (a.to_owned(), b.to_owned()))
-                .collect(),
+            signature: as_texts(self.order.signature),
         }
     }
 
@@ -236,12 +235,7 @@ pub(super) fn binary_of(device: &Device, request: &Request) -> Result<Option<Vec
     let options = c_string(request.options.clone())?;
     let program = compiled(device, &request.source, &options, &request.path)?;
     let kernel = kernel_of(&program, &request.kernel)?;
-    let signature = request.signature.iter();
-    signature::check(
-        &kernel,
-        &request.kernel,
-        signature.map(|(name, type_name)| (name.as_str(), type_name.as_str())),
-    )?;
+    signature::check(&kernel, &request.kernel, &request.signature)?;
     Ok(binary::of(&program).map(|binary| binary::packed(&binary)))
 }
 

@@ -1,5 +1,6 @@
 //! Rays along the voxel grid and through its corners, and eyes on it.
 
+use angioray::frame::{KIND, VALUE};
 use angioray::scene::{Camera, Filter, Lens};
 use glam::DVec3;
 
@@ -156,15 +157,15 @@ fn one_bright_voxel_is_found_at_every_kind_of_corner() {
         ));
         let frames = on_device(&device, &volume, &scenes);
         let (control, found) = frames.split_last().unwrap();
-        assert_eq!(control.value.as_ref().unwrap()[0], 0.0);
+        assert_eq!(control.plane(VALUE).unwrap()[0], 0.0);
         for (seen, (toward_eye, least)) in found.chunks(3).zip(ways) {
-            let value = seen[0].value.as_ref().unwrap()[0];
+            let value = seen[0].plane(VALUE).unwrap()[0];
             assert!(
                 value > least,
                 "{at} along {toward_eye}: the maximum is {value}"
             );
             assert_ne!(
-                seen[1].kind.as_ref().unwrap()[0],
+                seen[1].plane(KIND).unwrap()[0],
                 0,
                 "{at}: the surface is missed"
             );
@@ -202,7 +203,8 @@ fn nearest_voxels_along_the_grid() {
         scene.sampling.filter = Filter::Nearest;
         let frame = &on_device(&device, &volume, std::slice::from_ref(&scene))[0];
         let truth = on_reference(&volume, &scene);
-        assert_eq!(truth.value, frame.value, "{toward_eye}");
-        assert_ne!(truth.value, moved_by_a_pixel(frame).value);
+        let expected = truth.plane(VALUE).unwrap();
+        assert_eq!(frame.plane(VALUE).unwrap(), expected, "{toward_eye}");
+        assert_ne!(moved_by_a_pixel(frame).plane(VALUE).unwrap(), expected);
     }
 }

@@ -9,7 +9,7 @@ use super::super::ways::axis;
 use super::super::{Bench, Conduct, Effort, Experiment, Outcome, Protocol, random};
 use crate::error::Result;
 use crate::frame::error::{color_error, depth_error, value_error};
-use crate::frame::{Frame, Wanted, percentile};
+use crate::frame::{Frame, Layer, Wanted, percentile};
 use crate::measure::interleaved;
 use crate::octree::{Leaf, Octree};
 use crate::progress::{Silent, Stage};
@@ -222,12 +222,12 @@ impl<'a> Asked<'a> {
 
 /// The planes that a metric compares.
 fn wanted(metric: ErrorMetric) -> Wanted {
-    let geometry = matches!(metric, ErrorMetric::Depth | ErrorMetric::Missed);
-    Wanted {
-        display: !geometry && metric != ErrorMetric::Value,
-        depth: geometry,
-        value: metric == ErrorMetric::Value,
-        ..Wanted::default()
+    match metric {
+        ErrorMetric::Depth | ErrorMetric::Missed => Wanted::NONE.with([Layer::Depth]),
+        ErrorMetric::Value => Wanted::NONE.with([Layer::Value]),
+        ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {
+            Wanted::DISPLAY
+        }
     }
 }
 

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::compare::same_picture;
 use super::super::ways::{TestVolume, axis};
 use super::super::{Bench, Conduct, Experiment, Outcome, Specimen};
 use crate::error::Result;
@@ -156,7 +155,7 @@ fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<
             times,
             nodes_per_ray: counts.nodes_per_ray(),
             samples_per_ray: counts.samples_per_ray(),
-            same: same_picture(frame, &frames[place(RIVAL)]),
+            same: frame.shows_the_same(&frames[place(RIVAL)]),
         }
     });
     Ok(found.collect())

@@ -7,7 +7,7 @@ use super::super::ways::axis;
 use super::super::{Bench, Conduct, Experiment, Outcome, Specimen};
 use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::measure::{Times, Tradeoff, front};
 use crate::reference;
 use crate::render::Renderer;
@@ -290,10 +290,7 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
     let settings = Setting::all().into_iter();
     let scenes = settings.map(|setting| setting.of(surface.clone()));
     let scenes: Vec<Scene> = scenes.collect::<Result<_>>()?;
-    let depth = Wanted {
-        depth: true,
-        ..Wanted::default()
-    };
+    let depth = Wanted::NONE.with([Layer::Depth]);
     let truth = reference::render(&specimen.volume, &surface, depth, bench.progress)?;
     let voxel_mm = specimen.volume.geometry().smallest_spacing_mm();
     let mut borderline = Borderline::new(&specimen.volume, &surface)?;
@@ -307,10 +304,7 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
     let projection = specimen.maximum(side_px)?;
     let methods = Method::all().into_iter();
     let scenes: Vec<Scene> = methods.map(|m| m.of(projection.clone())).collect();
-    let value = Wanted {
-        value: true,
-        ..Wanted::default()
-    };
+    let value = Wanted::NONE.with([Layer::Value]);
     let truth = reference::render(&specimen.volume, &projection, value, bench.progress)?;
     let width = specimen.volume.range().width();
     let value_errors = errors(&mut renderer, &scenes, value, |frame| {

@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::bench::borderline::Borderline;
-use crate::bench::compare::same_picture;
 use crate::bench::{Bench, Protocol, Specimen, display_ms};
 use crate::error::{Error, Result};
 use crate::frame::error::{color_error, depth_error, flip, ssim};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::measure::{Counts, Times};
 use crate::octree::{Leaf, Octree};
 use crate::reference;
@@ -96,7 +95,7 @@ pub fn measure(
     let same: Vec<Option<bool>> = ways
         .iter()
         .zip(&frames)
-        .map(|(way, frame)| Some(same_picture(frame, &frames[way.same_as?])))
+        .map(|(way, frame)| Some(frame.shows_the_same(&frames[way.same_as?])))
         .collect();
     drop(frames);
     let times = bench.times_under(protocol, ways, |way, azimuth_deg| {
@@ -168,10 +167,7 @@ impl<'a> Truths<'a> {
         let place = match known {
             Some(place) => place,
             None => {
-                let wanted = Wanted {
-                    depth: true,
-                    ..Wanted::DISPLAY
-                };
+                let wanted = Wanted::DISPLAY.with([Layer::Depth]);
                 let volume = &self.specimen.volume;
                 let truth = reference::render(volume, &scene, wanted, self.bench.progress)?;
                 self.known.push((scene, truth));

@@ -7,7 +7,7 @@ use super::errors::{Sparse, Wrong};
 use crate::bench::protocol::turned;
 use crate::bench::{Bench, Effort, Specimen};
 use crate::error::{Error, Result};
-use crate::frame::{Wanted, median};
+use crate::frame::{Layer, Wanted, median};
 use crate::measure::{
     Counts, FrameTime, Peer, PeerScene, PeerTime, Readiness, Times, judged_planes, rounds, time,
 };
@@ -260,16 +260,11 @@ fn sampled(renderer: &mut Renderer, scene: &Scene) -> Result<Taken> {
 /// wanted, as in those that are timed: wanted planes ask for more of a projection.
 fn judged(contender: &Contender, truth: &Sparse, renderer: &mut Renderer) -> Result<Raced> {
     let scene = &contender.scene;
-    let counting = Wanted {
-        counters: true,
-        ..Wanted::DISPLAY
-    };
+    let counting = Wanted::DISPLAY.with(Layer::COUNTERS);
     let counted = renderer.render(scene, counting)?.frame;
-    let judging = Wanted {
-        counters: false,
-        kind: false,
-        ..judged_planes(&scene.picture)
-    };
+    let judging = judged_planes(&scene.picture)
+        .without(Layer::COUNTERS)
+        .without([Layer::Kind]);
     let frame = renderer.render(scene, judging)?.frame;
     Ok(Raced {
         runner: Runner::Ours,

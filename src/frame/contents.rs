@@ -135,3 +135,52 @@ impl Frame {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::layer::{DEPTH, KIND, NODES, NORMAL, STEPS, VALUE};
+
+    fn all(pixels: u32) -> Frame {
+        Frame::blank(ImageSize::new(pixels, 1).unwrap(), Wanted::ALL).unwrap()
+    }
+
+    #[test]
+    fn every_layers_plane_has_the_type_of_its_key() {
+        let frame = all(2);
+        assert_eq!(frame.plane(DEPTH), Some(&[f32::INFINITY; 2][..]));
+        assert_eq!(frame.plane(NORMAL), Some(&[[0.0; 3]; 2][..]));
+        assert_eq!(frame.plane(VALUE), Some(&[0.0; 2][..]));
+        for key in [STEPS, NODES, KIND, CERTIFICATE] {
+            let plane = frame.plane(key).map(<[u32]>::len);
+            assert_eq!(plane, Some(2), "{:?}", key.layer());
+        }
+        // The only layer that a picture has without a plane.
+        let missing = |layer: &Layer| !frame.layers.has(*layer);
+        assert!(Layer::ALL.into_iter().filter(missing).eq([Layer::Cast]));
+    }
+
+    #[test]
+    fn pictures_are_the_same_whatever_they_took_and_else_to_the_last_bit() {
+        let (one, mut other) = (all(3), all(3));
+        other.plane_mut(STEPS).unwrap()[1] = 7;
+        assert!(one.shows_the_same(&other));
+        other.plane_mut(VALUE).unwrap()[1] = -0.0;
+        assert!(!one.shows_the_same(&other));
+        other = all(3);
+        other.layers.take(VALUE);
+        assert!(!one.shows_the_same(&other));
+        other = all(3);
+        other.display = None;
+        assert!(!one.shows_the_same(&other));
+    }
+
+    #[test]
+    fn a_plane_of_another_length_is_named() {
+        let mut frame = all(3);
+        assert_eq!(frame.check(), Ok(()));
+        frame.layers.insert(NORMAL, vec![[0.0; 3]; 2]);
+        let error = frame.check().unwrap_err().to_string();
+        assert!(error.contains("normal plane has 2 entries"), "{error}");
+    }
+}

@@ -6,10 +6,12 @@ use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
 use super::layer::Layer;
-use super::webp;
 
 /// The colour's channels in formats of linear light, which is premultiplied.
 pub(super) const COLOR: [&str; 4] = ["R", "G", "B", "A"];
+
+/// The longest side of a WebP: the header has 14 bits for it; most decoders stop one short of 2^14.
+const WEBP_MAX_SIDE_PX: u32 = 16_383;
 
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,10 +143,10 @@ impl Encoding {
     /// # Errors
     /// A side longer than the format has numbers for (usage).
     pub fn check_size(&self, size: ImageSize) -> Result<()> {
-        let most = webp::MAX_SIDE_PX;
-        if self.format == Format::WebP && size.width().max(size.height()) > most {
+        let max = WEBP_MAX_SIDE_PX;
+        if self.format == Format::WebP && size.width().max(size.height()) > max {
             return Err(Error::usage(format!(
-                "a WebP has at most {most} pixels a side, the picture is {size}"
+                "a WebP has at most {max} pixels a side, the picture is {size}"
             ))
             .hint("write a .png"));
         }

@@ -12,9 +12,6 @@ use super::contents::Frame;
 use super::encoder_error::encoder_error;
 use super::quantize;
 
-/// The header has 14 bits for a side; most decoders stop one short of 2^14.
-pub(super) const MAX_SIDE_PX: u32 = 16_383;
-
 pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result<()> {
     let (width, height) = (frame.size.width(), frame.size.height());
     WebPEncoder::new_lossless(out)

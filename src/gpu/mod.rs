@@ -1,9 +1,12 @@
 //! The OpenCL device, memory, kernel sources, programs, typed passes and timings. Knows no volumes.
 
 mod args;
+mod arranged;
 mod binary;
+mod build_server;
 mod builder;
 mod device;
+mod device_info;
 mod element;
 mod image;
 mod loader;
@@ -18,7 +21,8 @@ mod status;
 mod timing;
 
 pub use args::{Args, Group};
-pub use device::{Device, DeviceInfo, DeviceKind};
+pub use device::Device;
+pub use device_info::{DeviceInfo, DeviceKind};
 pub use element::Element;
 pub use image::{Channel, Image};
 pub use memory::{AnyBuffer, Buffer};

@@ -13,9 +13,9 @@ use crate::error::{Error, Result};
 use crate::kept::asked_for;
 use crate::progress::Stage;
 
+use super::arranged::{Arranged, arranged};
 use super::builder::{self, Answer, Builders, Request};
 use super::device::Device;
-use super::process::{self, Arranged};
 use super::signature::{self, Parameter, as_texts};
 use super::status::device_error;
 use super::{binary, source};
@@ -37,7 +37,7 @@ impl Defines {
         self.0.iter().find(|d| d.0 == name).map(|d| d.1.as_str())
     }
 
-    /// The compiler's options: the constants, OpenCL C 1.2, argument names kept for checking.
+    /// The compiler's options: the constants, OpenCL C 1.2, argument names included for checking.
     pub fn options(&self) -> String {
         let mut options = String::from("-cl-std=CL1.2 -cl-kernel-arg-info");
         for (name, value) in &self.0 {
@@ -55,7 +55,7 @@ pub(super) struct Order<'a> {
     pub signature: &'a [Parameter],
 }
 
-/// Builds kernels, in the order given, or takes them from where built programs are kept. The device's
+/// Builds kernels, in the order given, or takes them from the cache of built programs. The device's
 /// listener hears of those that are built.
 ///
 /// # Errors
@@ -64,7 +64,7 @@ pub(super) struct Order<'a> {
 pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
     let plans = orders.iter().map(|order| Plan::of(device, order));
     let plans = plans.collect::<Result<Vec<Plan>>>()?;
-    let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.kept(device)).collect();
+    let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.cached(device)).collect();
     let missing: Vec<usize> = (0..plans.len()).filter(|&i| kernels[i].is_none()).collect();
     if !missing.is_empty() {
         let count = missing.len() as u64;
@@ -74,7 +74,7 @@ pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
             device.count_built();
             stage.advance(1);
         };
-        match process::arranged() {
+        match arranged() {
             Some(arranged) => build_elsewhere(arranged, device, &plans, &missing, take)?,
             None => build_here(device, &plans, &missing, take)?,
         }
@@ -137,12 +137,12 @@ fn build_elsewhere(
     outcome
 }
 
-/// A kernel's source and options, and where its binary is kept.
+/// A kernel's source and options, and where its binary is cached.
 struct Plan<'a> {
     order: &'a Order<'a>,
     source: String,
     options: CString,
-    kept: Option<PathBuf>,
+    cached: Option<PathBuf>,
 }
 
 impl<'a> Plan<'a> {
@@ -151,19 +151,19 @@ impl<'a> Plan<'a> {
         // Drivers print their compiler's warnings, which are the tests' business, beside the program's own
         // words.
         let options = format!("{} -w", order.defines.options());
-        // A kept program is one whose arguments were compared with this signature: it does not say them.
-        let kept = (device.binaries()).path(device.info(), &source, &options, order.signature);
+        // A cached program is one whose arguments were compared with this signature: it does not report them.
+        let cached = (device.binaries()).path(device.info(), &source, &options, order.signature);
         Ok(Self {
             order,
             source,
             options: c_string(options)?,
-            kept,
+            cached,
         })
     }
 
-    /// From where built programs are kept.
-    fn kept(&self, device: &Device) -> Option<Kernel> {
-        let path = self.kept.as_deref()?;
+    /// The kernel from the cache of built programs.
+    fn cached(&self, device: &Device) -> Option<Kernel> {
+        let path = self.cached.as_deref()?;
         let binary = binary::read(path)?;
         crash::suspect(path);
         let kernel = self.taken_from(device, &binary)?;
@@ -180,9 +180,9 @@ impl<'a> Plan<'a> {
         core::create_kernel(&program, self.order.name).ok()
     }
 
-    fn keep(&self, binary: &[u8]) {
-        if let Some(path) = &self.kept {
-            binary::keep(path, binary);
+    fn store(&self, binary: &[u8]) {
+        if let Some(path) = &self.cached {
+            binary::store(path, binary);
             crash::suspect(path);
         }
     }
@@ -198,7 +198,7 @@ impl<'a> Plan<'a> {
         let kernel = kernel_of(&program, name)?;
         signature::check(&kernel, name, &as_texts(signature))?;
         if let Some(binary) = binary::of(&program) {
-            self.keep(&binary);
+            self.store(&binary);
         }
         Ok(kernel)
     }
@@ -220,7 +220,7 @@ impl<'a> Plan<'a> {
         if let Answer::Built(binary) = answer
             && let Some(kernel) = self.taken_from(device, &binary)
         {
-            self.keep(&binary);
+            self.store(&binary);
             return Ok(kernel);
         }
         self.built_here(device)

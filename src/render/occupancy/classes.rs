@@ -8,7 +8,7 @@ use crate::octree::Octree;
 use crate::render::abi::{Class, StoredIso};
 use crate::render::resources::Knots;
 
-use super::criterion::Floor;
+use super::floor::Floor;
 use super::homogeneity::Limit;
 use super::opacity_ranges::OpacityRanges;
 

@@ -1,13 +1,14 @@
 //! What decides which nodes and cells matter for a picture: the numbers that its cast uses too.
 
 use crate::error::Result;
-use crate::frame::{Layer, Wanted};
+use crate::frame::Wanted;
 use crate::octree::Octree;
-use crate::render::abi::{StoredIso, stored};
+use crate::render::abi::StoredIso;
 use crate::render::resources::Knots;
-use crate::scene::{Emission, Picture, Projection, Scene, Window};
+use crate::scene::{Emission, Picture, Scene};
 use crate::volume::Volume;
 
+use super::floor::Floor;
 use super::homogeneity::Limit;
 use super::{cells, classes};
 
@@ -20,15 +21,6 @@ pub enum Criterion {
     Floor(Floor),
     /// The opacity of an emission.
     Opacity(Opacity),
-}
-
-/// The values that a projection need not find: those of sign · Φ that are not above a floor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Floor {
-    /// +1 looks for maxima, −1 for minima.
-    pub sign: f32,
-    /// Of sign · Φ, in stored units.
-    pub floor: f32,
 }
 
 /// What absorbs, and which leaves count as homogeneous.
@@ -76,32 +68,6 @@ impl Criterion {
             Self::Opacity(of) => cells::absorbing(volume, octree, classes, &of.knots),
             Self::Floor(_) => Ok(vec![0]),
         }
-    }
-}
-
-impl Floor {
-    /// What is not above the volume's own end, unless it may be a local maximum that counts; or, where only
-    /// the picture is wanted, what the window shows as it shows its own end.
-    fn of(
-        of: Projection,
-        window: Window,
-        wanted: Wanted,
-        volume: &Volume,
-        octree: &Octree,
-    ) -> Self {
-        let rescale = volume.rescale();
-        let [min, max] = octree.ranges()[octree.ranges().len() - 1];
-        let picture_alone = !wanted.has_any([Layer::Value, Layer::Depth]);
-        let floor = match of {
-            Projection::Maximum if picture_alone => min.max(stored(rescale, window.range().min)),
-            Projection::Minimum if picture_alone => -max.min(stored(rescale, window.range().max)),
-            Projection::Maximum => min,
-            Projection::Minimum => -max,
-            Projection::LocalMaximum { threshold } if stored(rescale, threshold) > min => min,
-            Projection::LocalMaximum { .. } | Projection::Mean => f32::NEG_INFINITY,
-        };
-        let sign = if of == Projection::Minimum { -1.0 } else { 1.0 };
-        Self { sign, floor }
     }
 }
 

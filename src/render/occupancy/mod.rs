@@ -5,11 +5,13 @@ mod cells;
 mod classes;
 mod criterion;
 mod distance;
+mod floor;
 mod homogeneity;
 mod occupancy_map;
 mod opacity_ranges;
 
 pub use cache::OccupancyCache;
-pub use criterion::{Criterion, Floor, Opacity};
+pub use criterion::{Criterion, Opacity};
+pub use floor::Floor;
 pub use homogeneity::stand_ins;
 pub use occupancy_map::Occupancy;

@@ -89,9 +89,9 @@ pub enum BitDepth {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoding {
     pub format: Format,
-    /// Of a PNG.
+    /// The bits per channel of a PNG.
     pub bit_depth: BitDepth,
-    /// Of a JPEG, 1 (small) to 100 (good).
+    /// The quality of a JPEG, 1 (small) to 100 (good).
     pub quality: u8,
     /// Beside the colour, in any order; EXR and NPY only.
     pub layers: Vec<Layer>,

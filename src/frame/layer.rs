@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use super::pixel::{Certificate, Kind};
 
-/// What every entry of a new plane is.
+/// The value of every entry of a new plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FillValue {
     /// A number.
@@ -66,7 +66,7 @@ macro_rules! layers {
                 match self { $(Self::$layer => &$channels),* }
             }
 
-            /// What a plane of this layer holds where no ray met anything and nothing is known; `None` where
+            /// The value that a plane of this layer holds where no ray met anything and nothing is known; `None` where
             /// a picture has no such plane unless something makes one.
             pub const fn empty(self) -> Option<FillValue> {
                 match self { $(Self::$layer => $empty),* }

@@ -1,6 +1,6 @@
-//! What a ray met and what is proven of it, as the numbers that pictures hold.
+//! The kind of a pixel and its certificate, as the numbers that pictures hold.
 
-/// What a pixel's ray met.
+/// The kind of thing that a pixel's ray met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Kind {
@@ -14,7 +14,7 @@ pub enum Kind {
     Geometry = 3,
 }
 
-/// What is proven of a pixel of an isosurface: whether its ray meets the surface.
+/// The proof of a pixel of an isosurface: whether its ray meets the surface.
 ///
 /// Proven means that no rounding error of the cast can change the answer, the voxels being taken
 /// as exact.

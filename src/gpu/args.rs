@@ -18,7 +18,7 @@ pub struct Args {
     arguments: Vec<Argument>,
 }
 
-/// What an argument is to the device.
+/// An argument as the device gets it.
 pub(super) enum Argument {
     Memory(Mem),
     Value(SmallVec<[u8; 64]>),

@@ -35,7 +35,7 @@ pub struct Binaries {
 }
 
 impl Binaries {
-    /// In the folder that the environment names, else in the user's cache folder.
+    /// Opens the cache in the folder that the environment names, else in the user's cache folder.
     ///
     /// # Errors
     /// The folder that is named cannot be made.

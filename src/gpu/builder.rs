@@ -26,7 +26,7 @@ pub(super) const ARGUMENT: &str = "--build-kernels";
 /// The folder where the driver of a builder caches what it builds.
 const DRIVERS: &str = "driver";
 
-/// What the driver of a builder said.
+/// The file of what the driver of a builder said.
 const SAID: &str = "said";
 
 /// The time between two looks for a builder's answer.
@@ -41,7 +41,7 @@ pub struct Request {
     /// The place of the device in the list, and what is there.
     pub device: usize,
     pub identity: [String; 4],
-    /// For messages: `kernels/<path>`.
+    /// The kernel's file for messages: `kernels/<path>`.
     pub path: String,
     pub source: String,
     pub options: String,
@@ -204,7 +204,7 @@ pub(super) fn packed(answer: Result<Option<Vec<u8>>>) -> Vec<u8> {
     }
 }
 
-/// What [`packed`] meant.
+/// The answer that [`packed`] made bytes of.
 fn unpacked(bytes: &[u8]) -> Result<Answer> {
     let (code, rest) = bytes.split_first().unwrap_or((&0, &[]));
     match ErrorKind::of_exit_code(i32::from(*code)) {

@@ -13,7 +13,7 @@ use super::device::Device;
 use super::memory::check_allocation;
 use super::status::device_error;
 
-/// What a texel holds. Kernels read all of them as floats: integers as shares of their type's largest.
+/// The content of a texel. Kernels read all of them as floats: integers as shares of their type's largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channel {
     Unorm8,
@@ -38,7 +38,7 @@ impl Channel {
         }
     }
 
-    /// For errors.
+    /// The name for errors.
     fn name(self) -> &'static str {
         match self {
             Self::Unorm8 => "8-bit integers",

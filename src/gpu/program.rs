@@ -82,7 +82,7 @@ pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
     Ok(kernels.into_iter().flatten().collect())
 }
 
-/// In this process, one after another.
+/// Builds kernels in this process, one after another.
 fn build_here(
     device: &Device,
     plans: &[Plan],
@@ -95,7 +95,7 @@ fn build_here(
     Ok(())
 }
 
-/// In processes of their own, as many at once as there are processors.
+/// Builds kernels in processes of their own, as many at once as there are processors.
 fn build_elsewhere(
     arranged: &Arranged,
     device: &Device,

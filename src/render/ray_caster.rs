@@ -14,10 +14,10 @@ use super::occupancy::{Criterion, Occupancy};
 use super::passes::Passes;
 use super::resources::HeldVolume;
 
-/// What one ray meets first.
+/// The first crossing of one ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstCrossing {
-    /// In lengths of the ray's direction from its origin; +∞: nothing.
+    /// The ray parameter: lengths of the ray's direction from its origin; +∞: nothing.
     pub t: f32,
     /// What the ray meets.
     pub kind: Kind,

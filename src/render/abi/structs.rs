@@ -35,7 +35,7 @@ device_struct! {
         origin: [f32; 4],
         origin_dx: [f32; 4],
         origin_dy: [f32; 4],
-        /// What the floats above leave out, as for the directions.
+        /// The rest of the floats above to their values in double precision, as for the directions.
         origin_low: [f32; 4],
         origin_dx_low: [f32; 4],
         origin_dy_low: [f32; 4],
@@ -69,9 +69,9 @@ device_struct! {
 }
 
 device_struct! {
-    /// What a surface's cast is given beside the scene.
+    /// The numbers of a surface's cast.
     SurfaceCast {
-        /// In stored units.
+        /// The iso value in stored units.
         iso: f32,
         step_mm: f32,
         caps: u32,
@@ -85,16 +85,16 @@ device_struct! {
 }
 
 device_struct! {
-    /// What a projection's cast is given beside the scene.
+    /// The numbers of a projection's cast.
     ProjectionCast {
         step_mm: f32,
         /// +1 looks for maxima, −1 for minima.
         sign: f32,
-        /// In stored units.
+        /// The threshold of local maxima in stored units.
         threshold: f32,
         traverse: u32,
         probe: u32,
-        /// Of sign · Φ, in stored units: what is not above it need not be found.
+        /// The floor of sign · Φ in stored units: what is not above it need not be found.
         floor: f32,
         pad_0: u32,
         pad_1: u32,
@@ -102,20 +102,20 @@ device_struct! {
 }
 
 device_struct! {
-    /// What an emission's cast is given beside the scene.
+    /// The numbers of an emission's cast.
     EmissionCast {
         step_mm: f32,
         unit_length_mm: f32,
-        /// Of the unit length: −ln(1 − the greatest opacity).
+        /// The absorption of the unit length at the greatest opacity: −ln(1 − opacity).
         most_absorption: f32,
         least_transmission: f32,
         knots: u32,
         traverse: u32,
-        /// Of the adaptive quadrature's error.
+        /// The bound of the adaptive quadrature's error.
         bound: f32,
         /// The most by which the knots' colours differ in a channel.
         color_spread: f32,
-        /// Stored units; outside nothing absorbs.
+        /// The range of values that absorb, in stored units.
         absorbs_from: f32,
         absorbs_to: f32,
         /// The opacity from which a pixel has a depth, a value and a normal.
@@ -128,7 +128,7 @@ device_struct! {
     /// The light and how a surface reflects it.
     Shading {
         color: [f32; 4],
-        /// World space; w = 1: the light is at the eye.
+        /// The unit direction toward the light in world space; w = 1: the light is at the eye.
         toward_light: [f32; 4],
         ambient: f32,
         diffuse: f32,

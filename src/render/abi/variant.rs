@@ -8,7 +8,7 @@ use crate::volume::{Volume, VoxelType};
 use super::constants::{KernelEnum, constants};
 use super::lanes::Lanes;
 
-/// What every pass over a volume is built for.
+/// The switches that every pass over a volume is built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// The type of the voxels.
@@ -17,7 +17,7 @@ pub struct Variant {
     pub filter: Filter,
     /// The edge of the octree's leaves.
     pub leaf: Leaf,
-    /// More voxels than 32 bits count.
+    /// Whether there are more voxels than 32 bits count.
     pub wide_index: bool,
     /// Rays that a work-item follows side by side.
     pub lanes: Lanes,

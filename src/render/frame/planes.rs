@@ -12,7 +12,7 @@ use crate::volume::Rescale;
 pub struct Planes {
     /// Linear light, premultiplied.
     pub color: Buffer<[f32; 4]>,
-    /// As it is displayed, where that is wanted.
+    /// The picture as it is displayed, where that is wanted.
     pub display: Option<Buffer<[f32; 4]>>,
     /// The layers that are wanted, or were needed on the way; values are in stored units. A medium has no
     /// kind: it is there where it is opaque enough to have layers.

@@ -39,9 +39,9 @@ pub struct Renderer<'a> {
     pub(super) device: &'a Device,
     pub(super) volume: &'a Volume,
     pub(super) octree: &'a Octree,
-    /// What of the volume is on the device.
+    /// The parts of the volume that are on the device.
     pub(super) held: HeldVolume,
-    /// Those of the last picture that needed some.
+    /// The precomputed gradients of the last picture that needed some.
     directions: Option<DeviceDirections>,
     occupancies: OccupancyCache,
     pub(super) passes: Passes,
@@ -73,7 +73,7 @@ pub struct Rendering {
     pub device_bytes: u64,
 }
 
-/// What an upload took.
+/// The cost of an upload.
 pub(super) struct Upload {
     ms: f64,
     bytes: u64,

@@ -1,4 +1,4 @@
-//! What a picture's schedule of passes looks at.
+//! The scene and its data, as a picture's schedule of passes gets them.
 
 use crate::frame::Wanted;
 use crate::octree::Octree;
@@ -8,7 +8,7 @@ use crate::render::resources::DeviceGradient;
 use crate::scene::Scene;
 use crate::volume::Volume;
 
-/// What is looked at, and what is wanted of it.
+/// A scene with its data on host and device, and the planes that are wanted of it.
 pub struct View<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -18,7 +18,7 @@ pub struct View<'a> {
     pub volume: &'a Volume,
     /// Its octree on the host.
     pub octree: &'a Octree,
-    /// What casts read of them on the device.
+    /// The same on the device, as casts read it.
     pub inputs: CastInputs<'a>,
     /// How normals are found.
     pub gradient: DeviceGradient<'a>,

@@ -1,5 +1,5 @@
-//! What is known of nodes and cells by the last few criteria: found once per iso value, floor or transfer
-//! function, however many frames look at the volume.
+//! A cache of the occupancies by the last few criteria: found once per iso value, floor or transfer function,
+//! however many frames look at the volume.
 
 use crate::error::Result;
 use crate::gpu::Device;
@@ -10,13 +10,13 @@ use crate::volume::Volume;
 use super::criterion::Criterion;
 use super::occupancy_map::Occupancy;
 
-/// What was found by the last few criteria, the latest last: for scenes that take turns, such as those of
+/// The occupancies by the last few criteria, the latest last: for scenes that take turns, such as those of
 /// a benchmark. The latest alone, or as many as together take half of the voxels' memory at most.
 #[derive(Default)]
 pub struct OccupancyCache(Vec<Occupancy>);
 
 impl OccupancyCache {
-    /// What is known by a criterion where rays are sampled in this way, and whether it had to be found.
+    /// The occupancy by a criterion where rays are sampled in this way, and whether it had to be found.
     ///
     /// # Errors
     /// The host or the device has no room.

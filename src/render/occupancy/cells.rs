@@ -132,7 +132,7 @@ fn join<T: Voxel>(a: [T; 2], b: [T; 2]) -> [T; 2] {
     ]
 }
 
-/// As the kernels find a cell's side: heights are single-precision differences.
+/// Whether a cell may be crossed, as the kernels find its side: heights are single-precision differences.
 fn may_cross([min, max]: [f32; 2], iso: StoredIso) -> bool {
     let above = min - iso.value >= iso.error;
     let below = max - iso.value < -iso.error;

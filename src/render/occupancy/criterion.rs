@@ -1,4 +1,4 @@
-//! What decides which nodes and cells matter for a picture: the numbers that its cast uses too.
+//! The criterion by which nodes and cells matter for a picture: the numbers that its cast uses too.
 
 use crate::error::Result;
 use crate::frame::Wanted;
@@ -12,7 +12,7 @@ use super::floor::Floor;
 use super::homogeneity::Limit;
 use super::{cells, classes};
 
-/// What decides which nodes and cells matter. It owns the numbers: casts read them here.
+/// The criterion by which nodes and cells matter. It owns its numbers: casts read them here.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Criterion {
     /// A surface's iso value.
@@ -23,7 +23,7 @@ pub enum Criterion {
     Opacity(Opacity),
 }
 
-/// What absorbs, and which leaves count as homogeneous.
+/// The criterion of an emission: what absorbs, and which leaves count as homogeneous.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Opacity {
     /// The transfer function.
@@ -56,7 +56,7 @@ impl Criterion {
         }
     }
 
-    /// The cells that matter, a bit each; none where nothing is led past them one by one.
+    /// The cells that matter, a bit each; a single word where none are skipped one by one.
     pub(super) fn cells(
         &self,
         volume: &Volume,

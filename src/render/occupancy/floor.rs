@@ -11,12 +11,12 @@ use crate::volume::Volume;
 pub struct Floor {
     /// +1 looks for maxima, −1 for minima.
     pub sign: f32,
-    /// Of sign · Φ, in stored units.
+    /// The floor of sign · Φ, in stored units.
     pub floor: f32,
 }
 
 impl Floor {
-    /// What is not above the volume's own end, unless it may be a local maximum that counts; or, where only
+    /// The floor of a projection: what is not above the volume's own end, unless it may be a local maximum that counts; or, where only
     /// the picture is wanted, what the window shows as it shows its own end.
     pub fn of(
         of: Projection,

@@ -23,7 +23,7 @@ use crate::volume::Volume;
 
 use super::opacity_ranges::OpacityRanges;
 
-/// What stands for each leaf of the octree, in stored units: its average. With the nearest filter the
+/// The value that stands for each leaf of the octree, in stored units: its average. With the nearest filter the
 /// average is no value of the field, which may lie between two labels: there the leaf's smallest or largest
 /// value stands for it, whichever is nearer to the average. All that is derived above of the average holds
 /// of any value in the leaf's range.

@@ -1,4 +1,4 @@
-//! What is known of the octree's nodes and of the cells before a ray meets them.
+//! The skip structure: what is known of the octree's nodes and of the cells before a ray meets them.
 
 mod cache;
 mod cells;

@@ -1,4 +1,4 @@
-//! What is known of nodes and cells, on the device.
+//! The classes of nodes and the bits of cells, on the device.
 
 use crate::error::Result;
 use crate::gpu::{Buffer, Device};
@@ -10,15 +10,15 @@ use crate::volume::Volume;
 use super::criterion::Criterion;
 use super::distance::add_distances;
 
-/// What is known of a volume's nodes and cells by one criterion, on the device.
+/// The occupancy of a volume by one criterion, on the device: which nodes and cells matter.
 pub struct Occupancy {
     criterion: Criterion,
     traverse: Traverse,
     filter: Filter,
     has_homogeneous: bool,
-    /// Per octree node its class and, where space is skipped by distance, its distance.
+    /// The class of each octree node and, where space is skipped by distance, its distance.
     pub node_class: Buffer<u8>,
-    /// A bit per cell that matters, where rays are led past the others together: with the linear filter
+    /// A bit per cell that matters, where ray packets skip the others: with the linear filter
     /// and where space is skipped by distance. Else a single word.
     pub cells: Buffer<u64>,
 }
@@ -56,7 +56,7 @@ impl Occupancy {
         })
     }
 
-    /// What nodes and cells were classified by.
+    /// The criterion that nodes and cells were classified by.
     pub fn criterion(&self) -> &Criterion {
         &self.criterion
     }

@@ -1,4 +1,4 @@
-//! What a transfer function does on a whole range of values, in O(1) a range.
+//! The extremes of a transfer function on a whole range of values, in O(1) a range.
 //!
 //! Colour and opacity are linear between knots, so that their extremes on a range are those at its
 //! ends and at the knots inside. Knots are found through bins of equal width; transparency by a
@@ -200,7 +200,7 @@ mod tests {
             let answer = ranges.is_transparent(min as f32, max as f32);
             assert!(!answer || clear, "{min}..{max} is called transparent");
             // Only ranges that begin at a knot's exact value between an opaque and a transparent
-            // stretch are kept although they vanish.
+            // interval are visited although they vanish.
             let begins_at_knot = POINTS.iter().any(|p| f64::from(p.0) == min);
             assert!(
                 answer || !clear || begins_at_knot,

@@ -1,4 +1,4 @@
-//! What both passes of an emission read.
+//! The inputs of both passes of an emission.
 
 use crate::frame::Layer;
 use crate::gpu::{Args, Buffer, Defines};
@@ -8,13 +8,13 @@ use crate::render::resources::{DeviceGradient, DeviceLayers, DeviceTransfer};
 use super::inputs::CastInputs;
 use super::run::Run;
 
-/// What both passes of an emission read.
+/// The inputs of both passes of an emission.
 pub struct EmissionInputs<'a> {
-    /// The scene.
+    /// The inputs of every cast.
     pub cast_inputs: CastInputs<'a>,
     /// The transfer function, with the tables of the quadrature.
     pub transfer: &'a DeviceTransfer,
-    /// What stands for each leaf, where some are homogeneous.
+    /// The value that stands for each leaf, where some are homogeneous.
     pub node_average: Option<&'a Buffer<f32>>,
     /// How normals are found, where they are made use of.
     pub gradient: DeviceGradient<'a>,

@@ -1,4 +1,4 @@
-//! What every cast reads beside its own numbers.
+//! The inputs of every cast beside its own numbers.
 
 use crate::gpu::Args;
 use crate::render::occupancy::Occupancy;
@@ -6,19 +6,19 @@ use crate::render::resources::{DeviceClip, DeviceGradient, DeviceVolume};
 
 use super::run::Run;
 
-/// What every cast reads of the scene: the volume, what is known of its nodes and cells, and the clip planes.
+/// The inputs of every cast: the volume, its occupancy, and the clip planes.
 #[derive(Clone, Copy)]
 pub struct CastInputs<'a> {
     /// The volume, but for its voxels.
     pub volume: &'a DeviceVolume,
-    /// What is known of its nodes and cells.
+    /// Which of its nodes and cells matter.
     pub occupancy: &'a Occupancy,
     /// The scene's clip planes.
     pub clip: &'a DeviceClip,
 }
 
 impl CastInputs<'_> {
-    /// The arguments of a cast that begin its list: voxels, and what can be skipped by classes and bits.
+    /// Begins the list of a cast that skips by classes and the bits of cells.
     pub fn by_cells(&self, run: &Run) -> Args {
         Args::new()
             .with(run.voxels)
@@ -27,7 +27,7 @@ impl CastInputs<'_> {
             .read("cells", &self.occupancy.cells)
     }
 
-    /// As [`CastInputs::by_cells`], for casts that skip by the ranges of nodes.
+    /// Begins the list of a cast that skips by classes and the ranges of nodes.
     pub fn by_ranges(&self, run: &Run) -> Args {
         Args::new()
             .with(run.voxels)

@@ -1,4 +1,4 @@
-//! What all passes of one frame share, and how one of them is launched.
+//! The launches of one frame: the data that all its passes share.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ impl Passes {
     }
 }
 
-/// What all passes of one frame share.
+/// The launches of one frame, and the data that all its passes share.
 pub struct Run<'a> {
     /// The device that runs them.
     pub device: &'a Device,
@@ -38,7 +38,7 @@ pub struct Run<'a> {
     pub rays: RaySource,
     /// Work-items along x and y of a group; `None`: small square tiles of pixels.
     pub work_group: Option<[usize; 2]>,
-    /// What the passes are built for.
+    /// The switches that the passes are built for.
     pub variant: Variant,
     /// The voxels, in the variant's storage.
     pub voxels: &'a DeviceVoxels,

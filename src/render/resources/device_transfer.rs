@@ -42,7 +42,7 @@ pub struct DeviceTransfer {
     values: Buffer<f32>,
     /// Linear light, opacity of the unit length in the last channel.
     colors: Buffer<[f32; 4]>,
-    /// As `KnotSums` of `preintegrated.clh` has them.
+    /// The sums over the knots, as `KnotSums` of `preintegrated.clh` has them.
     sums: Option<Buffer<[f32; 4]>>,
     value_sums: Option<Buffer<f32>>,
 }

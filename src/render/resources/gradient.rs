@@ -11,7 +11,7 @@ use crate::volume::Volume;
 
 use super::directions::{AngleError, Directions};
 
-/// What precomputed gradients cost and are worth.
+/// The cost of precomputed gradients, and their error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GradientFigures {
     /// Device memory that they take.
@@ -26,7 +26,7 @@ pub struct GradientFigures {
 pub struct DeviceDirections {
     /// How they were computed.
     pub how: Precomputed,
-    /// What they cost and are worth.
+    /// Their cost and error.
     pub figures: GradientFigures,
     directions: Buffer<i16>,
     /// Along x, y, z; voxels between two.
@@ -80,10 +80,10 @@ pub enum DeviceGradient<'a> {
 }
 
 impl<'a> DeviceGradient<'a> {
-    /// For a pass without normals.
+    /// The gradient of a pass without normals.
     pub const NONE: Self = Self::Differences(Gradient::Central);
 
-    /// By central differences where the picture needs no directions.
+    /// How a picture's gradients are found: by central differences where it needs no directions.
     pub fn of(gradient: Gradient, directions: Option<&'a DeviceDirections>) -> Self {
         match (gradient, directions) {
             (Gradient::Precomputed(_), Some(directions)) => Self::Directions(directions),

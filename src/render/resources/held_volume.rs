@@ -1,4 +1,4 @@
-//! What of a volume is on the device: uploaded when a picture first needs it, and held.
+//! The parts of a volume that are on the device: uploaded when a picture first needs them, and held.
 
 use crate::error::Result;
 use crate::gpu::Device;
@@ -9,7 +9,7 @@ use crate::volume::Volume;
 use super::volume::DeviceVolume;
 use super::voxels::DeviceVoxels;
 
-/// What of a volume is on the device: its octree's tables, and its voxels in each kind of storage that
+/// The parts of a volume that are on the device: its octree's tables, and its voxels in each kind of storage that
 /// pictures have needed.
 #[derive(Default)]
 pub struct HeldVolume {

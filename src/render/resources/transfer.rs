@@ -18,7 +18,7 @@ pub struct Knots {
 const SMOOTH_RATIO: f64 = 1.5;
 
 impl Knots {
-    /// Those that shape the function on the volume's values.
+    /// The knots that shape the function on the volume's values.
     pub fn of(transfer: &TransferFunction, volume: &Volume) -> Self {
         let knots = transfer.knots_within(volume.range());
         let rescale = volume.rescale();
@@ -92,12 +92,12 @@ impl Knots {
         self.integrals().into_iter().map(first_four).collect()
     }
 
-    /// As [`Knots::sums`], of value times absorption.
+    /// The integrals of value times absorption, as [`Knots::sums`].
     pub fn value_sums(&self) -> Vec<f32> {
         self.integrals().into_iter().map(|sums| sums[4]).collect()
     }
 
-    /// As [`Knots::sums`], of colour, 1 and value, each times absorption.
+    /// The integrals of colour, 1 and value, each times absorption, as [`Knots::sums`].
     fn integrals(&self) -> Vec<[f32; 5]> {
         let mut sum = [0.0; 5];
         let mut pairs = Vec::with_capacity(2 * self.values.len());

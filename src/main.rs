@@ -10,7 +10,7 @@ static ALLOCATOR: Allocator = Allocator;
 fn main() -> ExitCode {
     // SAFETY: the program begins here, with one thread.
     let process = unsafe { angioray::gpu::process::begin() };
-    if let Some(built) = process.build_if_asked() {
+    if let Some(built) = process.build_if_requested() {
         return built;
     }
     angioray::crash::catch();

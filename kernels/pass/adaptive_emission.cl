@@ -21,10 +21,6 @@
 #include "lib/light/emission.clh"
 #include "lib/skip/march.clh"
 
-#ifndef ADAPTIVE_HALVINGS
-#error "ADAPTIVE_HALVINGS, how often a piece of a cell is halved, is given by the host"
-#endif
-
 // The narrowest panel's share of its piece: it counts whatever the estimate.
 #define MIN_WIDTH (1.0f / (float)(1u << ADAPTIVE_HALVINGS))
 // Every panel that counts may follow one that was halved, and the first as many as there are levels.

@@ -15,7 +15,7 @@
 #include "lib/ray/cast_planes.clh"
 #include "lib/skip/march.clh"
 
-#if !defined(PROJECTION) || !defined(PROJECTION_EXTREMUM) || !defined(PROJECTION_MEAN) || !defined(PROJECTION_LOCAL)
+#ifndef PROJECTION
 #error "PROJECTION, which value is wanted, is given by the host"
 #endif
 

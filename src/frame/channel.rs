@@ -2,26 +2,10 @@
 
 use crate::error::{Error, Result};
 
-use super::{Encoding, Frame, Layer};
-
-/// The colour's channels: linear light, premultiplied.
-pub(super) const COLOR: [&str; 4] = ["R", "G", "B", "A"];
-
-/// The names of a file's channels, in the order of an NPY's last axis (EXR keeps its channels
-/// sorted by name).
-pub fn channels(encoding: &Encoding) -> Vec<String> {
-    let color: &[&str] = if encoding.format.is_display() {
-        &["R", "G", "B"]
-    } else {
-        &COLOR
-    };
-    let layers = encoding.layers_in_order().flat_map(Layer::channels);
-    color
-        .iter()
-        .chain(layers)
-        .map(|name| (*name).to_owned())
-        .collect()
-}
+use super::contents::Frame;
+use super::format::{COLOR, Encoding};
+use super::layer::Layer;
+use super::layers::Plane;
 
 /// One channel of a frame.
 pub(super) struct Channel<'a> {
@@ -40,7 +24,7 @@ enum Samples<'a> {
 }
 
 impl<'a> Channel<'a> {
-    /// A plane of one number a pixel.
+    /// The channel of a plane with one number a pixel.
     pub fn scalar(name: &'static str, plane: &'a [f32]) -> Self {
         Self {
             name,
@@ -60,7 +44,7 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// The channels that `encoding` requests, named and ordered as [`channels`] says.
+/// The channels that `encoding` names, in the order of [`super::channels`].
 ///
 /// # Errors
 /// A layer whose plane the frame lacks.
@@ -77,7 +61,7 @@ pub(super) fn channels_of<'a>(frame: &'a Frame, encoding: &Encoding) -> Result<V
         for (component, name) in layer.channels().iter().enumerate() {
             let samples = samples_of(frame, layer, component).ok_or_else(|| {
                 Error::failed(format!(
-                    "the layer '{}' was asked for, but the frame was rendered without it",
+                    "the layer '{}' is wanted, but the frame was rendered without it",
                     layer.name()
                 ))
             })?;
@@ -88,14 +72,11 @@ pub(super) fn channels_of<'a>(frame: &'a Frame, encoding: &Encoding) -> Result<V
 }
 
 fn samples_of(frame: &Frame, layer: Layer, component: usize) -> Option<Samples<'_>> {
-    Some(match layer {
-        Layer::Depth => Samples::Scalar(frame.depth.as_deref()?),
-        Layer::Normal => Samples::Vector(frame.normal.as_deref()?, component),
-        Layer::Value => Samples::Scalar(frame.value.as_deref()?),
-        Layer::Steps => Samples::Count(frame.steps.as_deref()?),
-        Layer::Nodes => Samples::Count(frame.nodes.as_deref()?),
-        Layer::Kind => Samples::Count(frame.kind.as_deref()?),
-        Layer::Certificate => Samples::Count(frame.certificate.as_deref()?),
-        Layer::Cast => Samples::One,
+    Some(match frame.layers.get(layer) {
+        Some(Plane::Scalars(plane)) => Samples::Scalar(plane),
+        Some(Plane::Vectors(plane)) => Samples::Vector(plane, component),
+        Some(Plane::Counts(plane)) => Samples::Count(plane),
+        None if layer == Layer::Cast => Samples::One,
+        None => return None,
     })
 }

@@ -5,7 +5,13 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::{Layer, webp};
+use super::layer::Layer;
+
+/// The colour's channels in formats of linear light, which is premultiplied.
+pub(super) const COLOR: [&str; 4] = ["R", "G", "B", "A"];
+
+/// The longest side of a WebP: the header has 14 bits for it; most decoders stop one short of 2^14.
+const WEBP_MAX_SIDE_PX: u32 = 16_383;
 
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,9 +89,9 @@ pub enum BitDepth {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoding {
     pub format: Format,
-    /// Of a PNG.
+    /// The bits per channel of a PNG.
     pub bit_depth: BitDepth,
-    /// Of a JPEG, 1 (small) to 100 (good).
+    /// The quality of a JPEG, 1 (small) to 100 (good).
     pub quality: u8,
     /// Beside the colour, in any order; EXR and NPY only.
     pub layers: Vec<Layer>,
@@ -137,10 +143,10 @@ impl Encoding {
     /// # Errors
     /// A side longer than the format has numbers for (usage).
     pub fn check_size(&self, size: ImageSize) -> Result<()> {
-        let most = webp::MAX_SIDE_PX;
-        if self.format == Format::WebP && size.width().max(size.height()) > most {
+        let max = WEBP_MAX_SIDE_PX;
+        if self.format == Format::WebP && size.width().max(size.height()) > max {
             return Err(Error::usage(format!(
-                "a WebP has at most {most} pixels a side, the picture is {size}"
+                "a WebP has at most {max} pixels a side, the picture is {size}"
             ))
             .hint("write a .png"));
         }
@@ -153,4 +159,20 @@ impl Encoding {
             .into_iter()
             .filter(|layer| self.format.carries_layers() && self.layers.contains(layer))
     }
+}
+
+/// The names of a file's channels, in the order of an NPY's last axis (EXR keeps its channels
+/// sorted by name).
+pub fn channels(encoding: &Encoding) -> Vec<String> {
+    let color: &[&str] = if encoding.format.is_display() {
+        &["R", "G", "B"]
+    } else {
+        &COLOR
+    };
+    let layers = encoding.layers_in_order().flat_map(Layer::channels);
+    color
+        .iter()
+        .chain(layers)
+        .map(|name| (*name).to_owned())
+        .collect()
 }

@@ -8,8 +8,9 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::Result;
 
-use super::image_error::image_failed;
-use super::{Frame, quantize};
+use super::contents::Frame;
+use super::encoder_error::encoder_error;
+use super::quantize;
 
 pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame, quality: u8) -> Result<()> {
     let (width, height) = (frame.size.width(), frame.size.height());
@@ -20,5 +21,5 @@ pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame, quality: 
             height,
             ExtendedColorType::Rgb8,
         )
-        .map_err(|error| image_failed(path, error))
+        .map_err(|error| encoder_error(path, error))
 }

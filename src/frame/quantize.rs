@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::memory;
 
-use super::Frame;
+use super::contents::Frame;
 
 /// The display plane's R, G, B as bytes: 0..1 to 0..255, rounded to nearest; what lies outside is
 /// clamped, NaN is 0.
@@ -29,7 +29,7 @@ pub(super) fn rgb16_big_endian(frame: &Frame) -> Result<Vec<u8>> {
 
 fn display_of(frame: &Frame) -> Result<&[[f32; 4]]> {
     frame.display.as_deref().ok_or_else(|| {
-        Error::failed("the picture was asked for as displayed, but the frame has no display plane")
+        Error::failed("the picture is wanted as displayed, but the frame has no display plane")
     })
 }
 
@@ -43,6 +43,7 @@ fn nearest_level(v: f32, top: u16) -> u16 {
 mod tests {
     use super::*;
     use crate::extent::ImageSize;
+    use crate::frame::Layers;
 
     #[test]
     fn every_level_comes_back_and_halves_go_to_the_nearest() {
@@ -82,13 +83,7 @@ mod tests {
             size: ImageSize::new(1, 1).unwrap(),
             color: vec![[0.0; 4]],
             display: Some(vec![[1.0, 0.5, (258.0 / 65535.0) as f32, 1.0]]),
-            depth: None,
-            normal: None,
-            value: None,
-            steps: None,
-            nodes: None,
-            kind: None,
-            certificate: None,
+            layers: Layers::default(),
         };
         assert_eq!(rgb8(&frame).unwrap(), [255, 128, 1]);
         assert_eq!(

@@ -8,11 +8,9 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::Result;
 
-use super::image_error::image_failed;
-use super::{Frame, quantize};
-
-/// The header has 14 bits for a side; most decoders stop one short of 2^14.
-pub(super) const MAX_SIDE_PX: u32 = 16_383;
+use super::contents::Frame;
+use super::encoder_error::encoder_error;
+use super::quantize;
 
 pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result<()> {
     let (width, height) = (frame.size.width(), frame.size.height());
@@ -23,5 +21,5 @@ pub(super) fn encode(out: &mut impl Write, path: &Path, frame: &Frame) -> Result
             height,
             ExtendedColorType::Rgb8,
         )
-        .map_err(|error| image_failed(path, error))
+        .map_err(|error| encoder_error(path, error))
 }

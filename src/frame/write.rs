@@ -6,7 +6,9 @@ use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
 use super::channel::channels_of;
-use super::{Encoding, Format, Frame, exr, jpeg, npy, png, webp};
+use super::contents::Frame;
+use super::format::{Encoding, Format};
+use super::{exr, jpeg, npy, png, webp};
 
 /// Writes a picture, whole or not at all. `metadata` are keys and texts; PNG keeps them as iTXt
 /// chunks and EXR as string attributes ([`super::read_metadata`] reads both), the other formats

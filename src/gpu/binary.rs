@@ -1,6 +1,6 @@
-//! Built programs, kept from run to run.
+//! The cache of built programs, which lasts from run to run.
 //!
-//! Drivers keep what they built too, but may need tenths of a second to find that nothing has changed:
+//! Drivers cache what they built too, but may need tenths of a second to find that nothing has changed:
 //! PoCL runs the whole preprocessor for it. A program's own binary is there in milliseconds.
 
 use std::fmt::Display;
@@ -12,35 +12,37 @@ use ocl::core::{self, Program, ProgramInfo, ProgramInfoResult};
 use crate::error::{Error, Result};
 use crate::kept::{self, Kept};
 
-use super::{DeviceInfo, Parameter, process};
+use super::arranged::arranged;
+use super::device_info::DeviceInfo;
+use super::signature::Parameter;
 
 /// Names the folder of built programs, or turns it off.
 const FOLDER: &str = "ANGIORAY_KERNEL_CACHE";
 const OFF: &str = "off";
 
-/// Of the files of built programs.
+/// The extension of the files of built programs.
 const EXTENSION: &str = "kernel";
 
-/// The longest that is read.
-const MOST_BYTES: u64 = 1 << 30;
+/// The longest file that is read.
+const MAX_BYTES: u64 = 1 << 30;
 
-/// Where built programs are kept; nowhere where there is no place for them.
+/// Where built programs are cached; nowhere where there is no place for them.
 #[derive(Debug)]
 pub struct Binaries {
-    kept: Option<Kept>,
-    /// Why they are not, where nobody asked for that.
+    cache: Option<Kept>,
+    /// Why they are not cached, where that was not the user's wish.
     note: Option<String>,
 }
 
 impl Binaries {
-    /// In the folder that the environment names, else in the user's cache folder.
+    /// Opens the cache in the folder that the environment names, else in the user's cache folder.
     ///
     /// # Errors
     /// The folder that is named cannot be made.
     pub fn open() -> Result<Self> {
         match std::env::var_os(FOLDER) {
             Some(word) if word == OFF || word.is_empty() => Ok(Self {
-                kept: None,
+                cache: None,
                 note: None,
             }),
             Some(folder) => Self::in_folder(Path::new(&folder)).map_err(|error| {
@@ -50,36 +52,36 @@ impl Binaries {
             }),
             None => {
                 let Some(folder) = kept::users_folder() else {
-                    return Ok(Self::not_kept("there is no cache folder of this user"));
+                    return Ok(Self::not_cached("there is no cache folder of this user"));
                 };
-                Ok(Self::in_folder(&folder).unwrap_or_else(Self::not_kept))
+                Ok(Self::in_folder(&folder).unwrap_or_else(Self::not_cached))
             }
         }
     }
 
     /// What is in the folder is used even where nothing can be added.
     fn in_folder(folder: &Path) -> Result<Self> {
-        let kept = Kept::in_folder(folder, EXTENSION)?;
-        let note = kept::check_takes_files(folder).err().map(not_kept);
+        let cache = Kept::in_folder(folder, EXTENSION)?;
+        let note = kept::check_takes_files(folder).err().map(not_cached);
         Ok(Self {
-            kept: Some(kept),
+            cache: Some(cache),
             note,
         })
     }
 
-    fn not_kept(why: impl Display) -> Self {
+    fn not_cached(why: impl Display) -> Self {
         Self {
-            kept: None,
-            note: Some(not_kept(why)),
+            cache: None,
+            note: Some(not_cached(why)),
         }
     }
 
-    /// Why built programs are not kept, where nobody asked for that.
+    /// Why built programs are not cached, where that was not the user's wish.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
-    /// Where the program is kept that the device's compiler makes of `source` and `options`, and whose
+    /// Where the program is cached that the device's compiler makes of `source` and `options`, and whose
     /// kernel has the arguments of `signature`.
     pub fn path(
         &self,
@@ -88,7 +90,7 @@ impl Binaries {
         options: &str,
         signature: &[Parameter],
     ) -> Option<PathBuf> {
-        let kept = self.kept.as_ref()?;
+        let cache = self.cache.as_ref()?;
         let mut hasher = blake3::Hasher::new();
         let DeviceInfo {
             name,
@@ -106,27 +108,29 @@ impl Binaries {
         }
         for parameter in signature {
             add(parameter.name);
-            add(&parameter.type_name);
+            add(&parameter.of.to_string());
         }
-        Some(kept.path(&hasher))
+        Some(cache.path(&hasher))
     }
 }
 
 /// The sentence of a [`Binaries::note`].
-fn not_kept(why: impl Display) -> String {
-    let folder = process::arranged().and_then(|arranged| arranged.folder().ok());
+fn not_cached(why: impl Display) -> String {
+    let folder = arranged().and_then(|arranged| arranged.folder().ok());
     let built_in = folder.map_or(String::new(), |folder| {
         format!(
             ", and built in '{}', which is removed at the end",
             folder.display()
         )
     });
-    format!("kernels are not kept from run to run ({why}){built_in}; {FOLDER} names another folder")
+    format!(
+        "kernels are not cached from run to run ({why}){built_in}; {FOLDER} names another folder"
+    )
 }
 
 /// The binary in a file of [`packed`] bytes; nothing where there is none, or none that is whole.
 pub fn read(path: &Path) -> Option<Vec<u8>> {
-    let bytes = kept::read(path, MOST_BYTES).ok()?;
+    let bytes = kept::read(path, MAX_BYTES).ok()?;
     unpacked(&bytes).map(<[u8]>::to_owned)
 }
 
@@ -152,8 +156,8 @@ pub fn packed(binary: &[u8]) -> Vec<u8> {
     [blake3::hash(binary).as_bytes(), binary].concat()
 }
 
-/// Keeps a binary in `path`. Where that cannot be done it is built again.
-pub fn keep(path: &Path, binary: &[u8]) {
+/// Stores a binary in `path`. Where that cannot be done it is built again.
+pub fn store(path: &Path, binary: &[u8]) {
     let _ = kept::write(path, |out| {
         out.write_all(&packed(binary))
             .map_err(|cause| Error::writing(path, "write", &cause))

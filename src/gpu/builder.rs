@@ -1,39 +1,38 @@
 //! Kernels built in processes of their own: the program itself, started anew.
 //!
-//! A driver that aborts, or is asked to stop, ends such a process and no other. It takes a [`Request`] after
+//! A driver that aborts, or has to stop, ends such a process and no other. It takes a [`Request`] after
 //! another, a line each, from its standard input, which stays open for as long as it is wanted, and leaves
 //! each answer in a file.
 
 use std::fs::{self, File};
-use std::io::{BufRead, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 use crate::stop;
 
-use super::process::{Arranged, POCL_FOLDER};
-use super::{Device, DeviceInfo, binary, program};
+use super::arranged::{Arranged, POCL_FOLDER};
+use super::binary;
+use super::device_info::DeviceInfo;
 
 /// The first argument of a builder; the second is its folder.
-const ARGUMENT: &str = "--build-kernels";
+pub(super) const ARGUMENT: &str = "--build-kernels";
 
-/// Where the driver of a builder keeps what it builds.
+/// The folder where the driver of a builder caches what it builds.
 const DRIVERS: &str = "driver";
 
-/// What the driver of a builder said.
+/// The file of what the driver of a builder said.
 const SAID: &str = "said";
 
-/// How often a builder is looked at.
-const LOOK: Duration = Duration::from_millis(5);
+/// The time between two looks for a builder's answer.
+const POLL: Duration = Duration::from_millis(5);
 
-/// Of what a driver said before it ended: characters.
+/// The most characters that are shown of what a driver said before it ended.
 const LAST_WORDS: usize = 400;
 
 /// A kernel to be built.
@@ -42,7 +41,7 @@ pub struct Request {
     /// The place of the device in the list, and what is there.
     pub device: usize,
     pub identity: [String; 4],
-    /// For messages: `kernels/<path>`.
+    /// The kernel's file for messages: `kernels/<path>`.
     pub path: String,
     pub source: String,
     pub options: String,
@@ -51,12 +50,12 @@ pub struct Request {
     pub signature: Vec<(String, String)>,
 }
 
-/// What tells a device from another that has its place now.
+/// What distinguishes a device from another that has its place now.
 pub fn identity(info: &DeviceInfo) -> [String; 4] {
     [&info.name, &info.platform, &info.driver, &info.version].map(Clone::clone)
 }
 
-/// What came of a request.
+/// The outcome of a request.
 #[derive(Debug, PartialEq)]
 pub enum Answer {
     /// The driver's binary.
@@ -156,7 +155,7 @@ impl Builder {
             if stop::asked() || no_longer_wanted.load(Ordering::Relaxed) {
                 return Err(Error::stopped("stopped while kernels were built"));
             }
-            std::thread::sleep(LOOK);
+            std::thread::sleep(POLL);
         }
     }
 
@@ -193,19 +192,19 @@ impl Drop for Builder {
     }
 }
 
-fn answer_file(folder: &Path, number: u64) -> PathBuf {
+pub(super) fn answer_file(folder: &Path, number: u64) -> PathBuf {
     folder.join(format!("{number}.answer"))
 }
 
 /// An answer as bytes: an exit code, then an error's message, or a packed binary where there is one.
-fn packed(answer: Result<Option<Vec<u8>>>) -> Vec<u8> {
+pub(super) fn packed(answer: Result<Option<Vec<u8>>>) -> Vec<u8> {
     match answer {
         Ok(binary) => [&[0], &binary.unwrap_or_default()[..]].concat(),
         Err(error) => [&[error.exit_code()], error.to_string().as_bytes()].concat(),
     }
 }
 
-/// What [`packed`] meant.
+/// The answer that [`packed`] made bytes of.
 fn unpacked(bytes: &[u8]) -> Result<Answer> {
     let (code, rest) = bytes.split_first().unwrap_or((&0, &[]));
     match ErrorKind::of_exit_code(i32::from(*code)) {
@@ -236,60 +235,8 @@ fn last_words(said: &Path) -> String {
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
     let before = line.chars().count().saturating_sub(LAST_WORDS);
-    let kept: String = line.chars().skip(before).collect();
-    if before > 0 {
-        format!("…{kept}")
-    } else {
-        kept
-    }
-}
-
-/// Whether this process was started as a builder.
-pub fn is_asked_for() -> bool {
-    std::env::args_os()
-        .nth(1)
-        .is_some_and(|first| first == ARGUMENT)
-}
-
-/// Builds the kernels that the standard input requests, as a builder, until it is closed.
-pub fn serve() -> ExitCode {
-    let Some(folder) = std::env::args_os().nth(2).map(PathBuf::from) else {
-        return ExitCode::from(ErrorKind::Usage.exit_code());
-    };
-    let (send, requests) = mpsc::channel();
-    std::thread::spawn(move || {
-        for line in std::io::stdin().lock().lines().map_while(|line| line.ok()) {
-            let _ = send.send(line);
-        }
-        // Nobody wants the rest. Not by `exit`, whose handlers would meet a compiler at work.
-        abrupt::end(&[], 0);
-    });
-    let mut device = None;
-    for (number, line) in (0..).zip(requests) {
-        let bytes = packed(served(&line, &mut device));
-        let (unfinished, answer) = (folder.join("unfinished"), answer_file(&folder, number));
-        let written = fs::write(&unfinished, bytes);
-        if written
-            .and_then(|()| fs::rename(&unfinished, &answer))
-            .is_err()
-        {
-            return ExitCode::from(ErrorKind::Resource.exit_code());
-        }
-    }
-    ExitCode::SUCCESS
-}
-
-fn served(line: &str, device: &mut Option<Device>) -> Result<Option<Vec<u8>>> {
-    let request: Request = serde_json::from_str(line)
-        .map_err(|cause| Error::failed(format!("a request for a kernel: {cause}")))?;
-    let device = match device {
-        Some(device) => device,
-        none => none.insert(Device::select(&request.device.to_string())?),
-    };
-    if identity(device.info()) != request.identity {
-        return Err(Error::no_device("another device has its place"));
-    }
-    program::binary_of(device, &request)
+    let end: String = line.chars().skip(before).collect();
+    if before > 0 { format!("…{end}") } else { end }
 }
 
 #[cfg(test)]

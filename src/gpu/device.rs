@@ -1,58 +1,23 @@
 //! Finding and opening an OpenCL device.
 
 use std::ffi::CString;
-use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use ocl::core::{
-    self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId,
-    DeviceInfo as Query, DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
+    self, CommandQueue, CommandQueueProperties, Context, ContextProperties, DeviceId, DeviceType,
+    PlatformId,
 };
 
 use crate::crash;
 use crate::error::{Error, Result};
 use crate::progress::{Progress, Silent};
 
+use super::arranged::{Arranged, arranged};
 use super::binary::Binaries;
-use super::process::{self, Arranged};
-use super::{device_error, loader};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DeviceKind {
-    Cpu,
-    Gpu,
-    Accelerator,
-}
-
-impl fmt::Display for DeviceKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Cpu => "cpu",
-            Self::Gpu => "gpu",
-            Self::Accelerator => "accelerator",
-        })
-    }
-}
-
-/// What `angioray devices` prints of a device.
-#[derive(Debug, Clone)]
-pub struct DeviceInfo {
-    /// Its place in the list of all platforms' devices: `--device ID`.
-    pub id: usize,
-    pub name: String,
-    pub platform: String,
-    pub driver: String,
-    /// The OpenCL version that it speaks.
-    pub version: String,
-    pub kind: DeviceKind,
-    pub compute_units: u32,
-    pub memory_bytes: u64,
-    pub max_allocation_bytes: u64,
-    pub max_work_group: usize,
-    /// Single-precision numbers in a vector of its own.
-    pub vector_width: u32,
-}
+use super::device_info::{DeviceInfo, DeviceKind, describe};
+use super::loader;
+use super::status::device_error;
 
 /// An open device with one in-order queue that times what runs on it.
 pub struct Device {
@@ -122,7 +87,7 @@ impl Device {
         self
     }
 
-    /// Why built kernels are not kept from run to run, where nobody asked for that.
+    /// Why built kernels are not cached from run to run, where that was not the user's wish.
     pub fn note(&self) -> Option<&str> {
         self.binaries.note()
     }
@@ -146,16 +111,17 @@ impl Device {
         })
     }
 
+    /// What is known of the device.
     pub fn info(&self) -> &DeviceInfo {
         &self.info
     }
 
-    /// Copied to the device since it was opened.
+    /// Bytes copied to the device since it was opened.
     pub fn uploaded_bytes(&self) -> u64 {
         self.uploaded_bytes.load(Ordering::Relaxed)
     }
 
-    /// Built, not taken from where they are kept, since it was opened.
+    /// Kernels built, and not taken from the cache, since it was opened.
     pub fn built_kernels(&self) -> u64 {
         self.built_kernels.load(Ordering::Relaxed)
     }
@@ -190,6 +156,9 @@ impl Device {
     }
 
     /// Waits until all that was launched is done.
+    ///
+    /// # Errors
+    /// The device failed.
     pub fn finish(&self) -> Result<()> {
         core::finish(&self.queue).map_err(|e| device_error("finish", &e))
     }
@@ -202,13 +171,13 @@ impl Device {
     }
 }
 
-/// Every usable device with its platform. Devices that cannot be asked are left out.
+/// Every usable device with its platform. Devices that do not answer are left out.
 fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
     // Drivers set themselves up at the first call, and not all of them can do it in two threads at once.
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    let folder = process::arranged().map(Arranged::folder);
+    let folder = arranged().map(Arranged::folder);
     loader::open().map_err(|reason| {
         Error::no_device(format!("no OpenCL library is installed ({reason})")).hint(INSTALL)
     })?;
@@ -239,57 +208,10 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     Ok(found)
 }
 
-/// Whether any driver is installed: asked first, because `ocl` waits ten seconds for one to appear.
+/// Whether any driver is installed: found out first, because `ocl` waits ten seconds for one to appear.
 fn any_platform() -> bool {
     let mut count = 0;
-    // SAFETY: no list of length 0 is how OpenCL is asked for the count alone.
+    // SAFETY: no list of length 0 makes OpenCL give the count alone.
     unsafe { ocl::ffi::clGetPlatformIDs(0, std::ptr::null_mut(), &raw mut count) };
     count > 0
-}
-
-fn describe(id: usize, platform: PlatformId, device: DeviceId) -> Option<DeviceInfo> {
-    let ask = |query| core::get_device_info(device, query).ok();
-    let text = |query| Some(ask(query)?.to_string().trim().to_owned());
-    let DeviceInfoResult::Type(kind) = ask(Query::Type)? else {
-        return None;
-    };
-    let DeviceInfoResult::MaxComputeUnits(compute_units) = ask(Query::MaxComputeUnits)? else {
-        return None;
-    };
-    let DeviceInfoResult::GlobalMemSize(memory_bytes) = ask(Query::GlobalMemSize)? else {
-        return None;
-    };
-    let DeviceInfoResult::MaxMemAllocSize(max_allocation_bytes) = ask(Query::MaxMemAllocSize)?
-    else {
-        return None;
-    };
-    let DeviceInfoResult::MaxWorkGroupSize(max_work_group) = ask(Query::MaxWorkGroupSize)? else {
-        return None;
-    };
-    let DeviceInfoResult::NativeVectorWidthFloat(vector_width) =
-        ask(Query::NativeVectorWidthFloat)?
-    else {
-        return None;
-    };
-    Some(DeviceInfo {
-        id,
-        name: text(Query::Name)?,
-        platform: core::get_platform_info(platform, PlatformInfo::Name)
-            .ok()?
-            .to_string(),
-        driver: text(Query::DriverVersion)?,
-        version: text(Query::Version)?,
-        kind: if kind.contains(DeviceType::GPU) {
-            DeviceKind::Gpu
-        } else if kind.contains(DeviceType::CPU) {
-            DeviceKind::Cpu
-        } else {
-            DeviceKind::Accelerator
-        },
-        compute_units,
-        memory_bytes,
-        max_allocation_bytes,
-        max_work_group,
-        vector_width,
-    })
 }

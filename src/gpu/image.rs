@@ -9,10 +9,11 @@ use ocl::core::{
 
 use crate::error::{Error, Result};
 
+use super::device::Device;
 use super::memory::check_allocation;
-use super::{Device, device_error};
+use super::status::device_error;
 
-/// What a texel holds. Kernels read all of them as floats: integers as shares of their type's largest.
+/// The content of a texel. Kernels read all of them as floats: integers as shares of their type's largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channel {
     Unorm8,
@@ -37,7 +38,7 @@ impl Channel {
         }
     }
 
-    /// For errors.
+    /// The name for errors.
     fn name(self) -> &'static str {
         match self {
             Self::Unorm8 => "8-bit integers",
@@ -61,15 +62,16 @@ impl Image {
     pub fn check(device: &Device, what: &str, size: [usize; 3], channel: Channel) -> Result<()> {
         let name = &device.info().name;
         let refused = |why: String| Err(Error::resource(why));
-        let DeviceInfoResult::ImageSupport(true) = ask(device, Query::ImageSupport)? else {
+        let DeviceInfoResult::ImageSupport(true) = query_device(device, Query::ImageSupport)?
+        else {
             return refused(format!("the device '{name}' has no images"));
         };
-        let most = most_texels(device)?;
-        if (0..3).any(|axis| size[axis] > most[axis]) {
+        let max = max_texels(device)?;
+        if (0..3).any(|axis| size[axis] > max[axis]) {
             let [nx, ny, nz] = size;
-            let [most_x, most_y, most_z] = most;
+            let [max_x, max_y, max_z] = max;
             return refused(format!(
-                "the {what} of {nx}x{ny}x{nz} voxels is larger than an image of the device '{name}', {most_x}x{most_y}x{most_z} at most"
+                "the {what} of {nx}x{ny}x{nz} voxels is larger than an image of the device '{name}', {max_x}x{max_y}x{max_z} at most"
             ));
         }
         let formats = core::get_supported_image_formats(
@@ -152,7 +154,7 @@ impl Image {
         Ok(Self { mem, bytes })
     }
 
-    /// Of its texels; what the device adds to lay them out is not told.
+    /// The bytes of its texels; what the device adds to lay them out is not known.
     pub fn bytes(&self) -> u64 {
         self.bytes as u64
     }
@@ -168,26 +170,26 @@ fn bytes([nx, ny, nz]: [usize; 3], channel: Channel) -> usize {
         .saturating_mul(channel.bytes())
 }
 
-fn ask(device: &Device, query: Query) -> Result<DeviceInfoResult> {
+fn query_device(device: &Device, query: Query) -> Result<DeviceInfoResult> {
     core::get_device_info(device.device_id(), query)
-        .map_err(|e| device_error("ask the device for its images", &e))
+        .map_err(|e| device_error("query the device's images", &e))
 }
 
-/// Along x, y and z.
-fn most_texels(device: &Device) -> Result<[usize; 3]> {
-    let mut most = [0; 3];
+/// The most texels along x, y and z.
+fn max_texels(device: &Device) -> Result<[usize; 3]> {
+    let mut max = [0; 3];
     let queries = [
         Query::Image3dMaxWidth,
         Query::Image3dMaxHeight,
         Query::Image3dMaxDepth,
     ];
-    for (most, query) in most.iter_mut().zip(queries) {
-        *most = match ask(device, query)? {
+    for (max, query) in max.iter_mut().zip(queries) {
+        *max = match query_device(device, query)? {
             DeviceInfoResult::Image3dMaxWidth(n)
             | DeviceInfoResult::Image3dMaxHeight(n)
             | DeviceInfoResult::Image3dMaxDepth(n) => n,
             _ => 0,
         };
     }
-    Ok(most)
+    Ok(max)
 }

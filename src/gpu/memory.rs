@@ -8,16 +8,18 @@ use ocl::core::{self, Event, Mem, MemFlags};
 use crate::error::{Error, Result};
 use crate::memory;
 
-use super::{Device, Element, device_error};
+use super::device::Device;
+use super::element::Element;
+use super::status::device_error;
 
-/// Whether the device gives so many bytes in one piece.
+/// Checks that the device gives so many bytes in one piece.
 pub(super) fn check_allocation(device: &Device, what: &str, bytes: usize) -> Result<()> {
-    let most = device.info().max_allocation_bytes;
-    if bytes as u64 <= most {
+    let max = device.info().max_allocation_bytes;
+    if bytes as u64 <= max {
         return Ok(());
     }
     Err(Error::resource(format!(
-        "the {what} needs {bytes} bytes in one piece, the device '{}' allows {most}",
+        "the {what} needs {bytes} bytes in one piece, the device '{}' allows {max}",
         device.info().name
     ))
     .hint("choose a smaller picture or volume, or another --device"))

@@ -1,60 +1,55 @@
-//! A pass: one kernel, its arguments checked by name, type and count when it is built.
+//! A pass: one kernel, whose arguments are checked by name, type and count when it is built.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use bytemuck::bytes_of;
-use ocl::core::{self, ArgVal, Event, Kernel, Mem};
-use smallvec::SmallVec;
+use ocl::core::{self, Event, Kernel};
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 
-use super::program::{self, Order};
-use super::signature::{IMAGE, Parameter};
-use super::{AnyBuffer, Buffer, Defines, Device, Element, Image, Timings, device_error};
+use super::args::{Args, Argument};
+use super::device::Device;
+use super::program::{self, Defines, Order};
+use super::signature::Parameter;
+use super::status::device_error;
 
-/// A kernel and its signature, built when it is first launched, or before.
+/// A kernel, built before its first launch. The arguments of that launch are its signature: the kernel is
+/// compared with them when it is built, and later launches must give the same.
 pub struct Pass {
     folder: &'static str,
     name: &'static str,
     defines: Defines,
-    signature: Vec<Parameter>,
     /// Pixels along x and y that one work-item takes.
     tile: [usize; 2],
+    signature: OnceLock<Vec<Parameter>>,
     kernel: Mutex<Option<Kernel>>,
 }
 
 impl Pass {
-    /// The kernel `name` of `kernels/<folder>/<name>.cl`, not built yet.
+    /// The kernel `name` of `kernels/<folder>/<name>.cl`, not built yet; one work-item takes a `tile` of
+    /// pixels along x and y.
     pub fn new(
         folder: &'static str,
         name: &'static str,
         defines: Defines,
-        signature: Vec<Parameter>,
-    ) -> Self {
-        Self {
+        tile: [usize; 2],
+    ) -> Arc<Self> {
+        Arc::new(Self {
             folder,
             name,
             defines,
-            signature,
-            tile: [1, 1],
+            tile,
+            signature: OnceLock::new(),
             kernel: Mutex::new(None),
-        }
-    }
-
-    /// One work-item for a tile of pixels along x and y.
-    #[must_use]
-    pub fn with_tile(mut self, tile: [usize; 2]) -> Self {
-        self.tile = tile;
-        self
+        })
     }
 
     fn kernel(&self) -> MutexGuard<'_, Option<Kernel>> {
         self.kernel.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Builds those of the passes that are not built yet, and holds them against their signatures. Gives how
-    /// many there were.
+    /// Builds those of the passes that are not built yet, and compares them with their signatures. Returns
+    /// how many there were.
     ///
     /// # Errors
     /// One does not build, or its arguments are not those of its signature.
@@ -78,140 +73,63 @@ impl Pass {
         Ok(count)
     }
 
-    /// Builds the pass at once.
-    ///
-    /// # Errors
-    /// It does not build, or its arguments are not those of its signature.
-    pub fn built(self, device: &Device) -> Result<Arc<Self>> {
-        let pass = Arc::new(self);
-        Self::build_all(device, [&pass].into_iter())?;
-        Ok(pass)
-    }
-
     fn order(&self) -> Order<'_> {
         Order {
             path: format!("{}/{}.cl", self.folder, self.name),
             name: self.name,
             defines: &self.defines,
-            signature: &self.signature,
+            signature: self.signature.get().map_or(&[], Vec::as_slice),
         }
     }
 
-    /// Starts a list of arguments, in the signature's order.
-    pub fn launch<'a>(self: &'a Arc<Self>, device: &'a Device) -> Launch<'a> {
-        Launch {
-            pass: self,
-            device,
-            given: Vec::new(),
-            failed: None,
-        }
-    }
-}
-
-/// An argument that was given: what a launch needs of it, held for as long as the launch waits.
-enum Given {
-    Memory(Mem),
-    Value(SmallVec<[u8; 64]>),
-}
-
-/// Arguments being given to a pass; [`Launch::run`] has it launched.
-#[must_use]
-pub struct Launch<'a> {
-    pass: &'a Arc<Pass>,
-    device: &'a Device,
-    given: Vec<Given>,
-    failed: Option<Error>,
-}
-
-impl<'a> Launch<'a> {
-    pub fn input(self, buffer: &'a AnyBuffer) -> Self {
-        let type_name = format!("{}*", buffer.cl_name());
-        self.give(&type_name, Given::Memory(buffer.mem().clone()))
-    }
-
-    /// As [`Launch::input`], for a buffer that the pass writes.
-    pub fn output<T: Element>(self, buffer: &'a mut Buffer<T>) -> Self {
-        self.input(buffer)
-    }
-
-    /// As [`Launch::input`], for an image.
-    pub fn image(self, image: &'a Image) -> Self {
-        self.give(IMAGE, Given::Memory(image.mem().clone()))
-    }
-
-    pub fn value<T: Element>(self, value: &T) -> Self {
-        self.give(T::CL_NAME, Given::Value(bytes_of(value).into()))
-    }
-
-    fn give(mut self, type_name: &str, given: Given) -> Self {
-        let name = self.pass.name;
-        let wrong = match self.pass.signature.get(self.given.len()) {
-            Some(parameter) if parameter.type_name == type_name => None,
-            Some(parameter) => Some(format!(
-                "the pass {name} wants '{} {}' and was given '{type_name}'",
-                parameter.type_name, parameter.name
-            )),
-            None => Some(format!("too many arguments for the pass {name}")),
-        };
-        self.failed = self.failed.or(wrong.map(Error::failed));
-        self.given.push(given);
-        self
-    }
-
-    /// Puts a launch of a work-item per tile of pixels, in groups of `work_group` work-items along x and y,
-    /// at the end of `timings`.
+    /// Prepares a launch with these arguments: a work-item per tile of the `size` pixels, in groups of
+    /// `work_group` work-items along x and y; `None`: groups of 8 × 8 pixels, where the device takes those.
     ///
     /// # Errors
-    /// An argument was wrong or missing.
-    pub fn run(
-        self,
+    /// The arguments are not those of the first launch.
+    pub fn launch(
+        self: &Arc<Self>,
+        device: &Device,
+        args: Args,
         size: ImageSize,
         work_group: Option<[usize; 2]>,
-        timings: &mut Timings,
-    ) -> Result<()> {
-        let pass = self.pass;
-        if let Some(error) = self.failed {
-            return Err(error);
-        }
-        if self.given.len() != pass.signature.len() {
+    ) -> Result<Launch> {
+        let (parameters, arguments) = args.into_parts();
+        let signature = self.signature.get_or_init(|| parameters.clone());
+        if *signature != parameters {
             return Err(Error::failed(format!(
-                "the pass {} takes {} arguments and was given {}",
-                pass.name,
-                pass.signature.len(),
-                self.given.len()
+                "the pass {} was first launched with other arguments",
+                self.name
             )));
         }
-        let [tile_x, tile_y] = pass.tile;
-        let [group_x, group_y] = work_group.unwrap_or_else(|| own_choice(self.device, pass.tile));
-        let global = [
-            (size.width() as usize)
-                .div_ceil(tile_x)
-                .next_multiple_of(group_x),
-            (size.height() as usize)
-                .div_ceil(tile_y)
-                .next_multiple_of(group_y),
-            1,
-        ];
-        timings.add(Waiting {
-            pass: Arc::clone(pass),
-            given: self.given,
-            global,
+        let [tile_x, tile_y] = self.tile;
+        let [group_x, group_y] = work_group.unwrap_or_else(|| default_group(device, self.tile));
+        let (width, height) = (size.width() as usize, size.height() as usize);
+        Ok(Launch {
+            pass: Arc::clone(self),
+            arguments,
+            global: [
+                width.div_ceil(tile_x).next_multiple_of(group_x),
+                height.div_ceil(tile_y).next_multiple_of(group_y),
+                1,
+            ],
             group: [group_x, group_y, 1],
-        });
-        Ok(())
+        })
     }
 }
 
-/// A launch that waits for the passes of its frame to be built.
-pub(super) struct Waiting {
-    pub pass: Arc<Pass>,
-    given: Vec<Given>,
+/// A launch of a pass that has not been made yet: it waits for the passes of its frame to be built.
+#[must_use]
+pub struct Launch {
+    pub(super) pass: Arc<Pass>,
+    arguments: Vec<Argument>,
     global: [usize; 3],
     group: [usize; 3],
 }
 
-impl Waiting {
-    pub fn name(&self) -> &'static str {
+impl Launch {
+    /// The name of the pass.
+    pub(super) fn name(&self) -> &'static str {
         self.pass.name
     }
 
@@ -219,22 +137,16 @@ impl Waiting {
     ///
     /// # Errors
     /// The device refused an argument or the launch.
-    pub fn start(&self, device: &Device) -> Result<Event> {
+    pub(super) fn start(&self, device: &Device) -> Result<Event> {
         let name = self.pass.name;
         let kernel = self.pass.kernel();
         let Some(kernel) = &*kernel else {
             return Err(Error::failed(format!("the pass {name} is not built")));
         };
-        for (index, given) in self.given.iter().enumerate() {
-            let argument = match given {
-                Given::Memory(mem) => ArgVal::mem(mem),
-                // SAFETY: pointer and size are those of bytes that OpenCL copies in the call below.
-                Given::Value(bytes) => unsafe {
-                    ArgVal::from_raw(bytes.len(), bytes.as_ptr().cast(), false)
-                },
-            };
-            core::set_kernel_arg(kernel, index as u32, argument).map_err(|e| {
-                let argument = self.pass.signature[index].name;
+        for (index, argument) in self.arguments.iter().enumerate() {
+            core::set_kernel_arg(kernel, index as u32, argument.as_cl()).map_err(|e| {
+                let signature = self.pass.signature.get();
+                let argument = signature.map_or("", |signature| signature[index].name);
                 device_error(&format!("set '{argument}' of the pass {name}"), &e)
             })?;
         }
@@ -263,7 +175,7 @@ impl Waiting {
 const GROUP_PIXELS: [usize; 2] = [8, 8];
 
 /// Work-items of a group, each taking a `tile` of pixels; single ones where the device takes fewer.
-fn own_choice(device: &Device, tile: [usize; 2]) -> [usize; 2] {
+fn default_group(device: &Device, tile: [usize; 2]) -> [usize; 2] {
     let group = [0, 1].map(|axis| (GROUP_PIXELS[axis] / tile[axis]).max(1));
     if group[0] * group[1] <= device.info().max_work_group {
         group

@@ -13,10 +13,12 @@ use crate::error::{Error, Result};
 use crate::kept::asked_for;
 use crate::progress::Stage;
 
+use super::arranged::{Arranged, arranged};
 use super::builder::{self, Answer, Builders, Request};
-use super::process::{self, Arranged};
-use super::signature::{self, Parameter};
-use super::{Device, binary, device_error, source};
+use super::device::Device;
+use super::signature::{self, Parameter, as_texts};
+use super::status::device_error;
+use super::{binary, source};
 
 /// The constants of a built program, `-D NAME=VALUE`, in the order given. Two equal lists are the
 /// same program.
@@ -35,7 +37,7 @@ impl Defines {
         self.0.iter().find(|d| d.0 == name).map(|d| d.1.as_str())
     }
 
-    /// The compiler's options: the constants, OpenCL C 1.2, argument names kept for checking.
+    /// The compiler's options: the constants, OpenCL C 1.2, argument names included for checking.
     pub fn options(&self) -> String {
         let mut options = String::from("-cl-std=CL1.2 -cl-kernel-arg-info");
         for (name, value) in &self.0 {
@@ -53,7 +55,7 @@ pub(super) struct Order<'a> {
     pub signature: &'a [Parameter],
 }
 
-/// Builds kernels, in the order given, or takes them from where built programs are kept. The device's
+/// Builds kernels, in the order given, or takes them from the cache of built programs. The device's
 /// listener hears of those that are built.
 ///
 /// # Errors
@@ -62,7 +64,7 @@ pub(super) struct Order<'a> {
 pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
     let plans = orders.iter().map(|order| Plan::of(device, order));
     let plans = plans.collect::<Result<Vec<Plan>>>()?;
-    let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.kept(device)).collect();
+    let mut kernels: Vec<Option<Kernel>> = plans.iter().map(|plan| plan.cached(device)).collect();
     let missing: Vec<usize> = (0..plans.len()).filter(|&i| kernels[i].is_none()).collect();
     if !missing.is_empty() {
         let count = missing.len() as u64;
@@ -72,7 +74,7 @@ pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
             device.count_built();
             stage.advance(1);
         };
-        match process::arranged() {
+        match arranged() {
             Some(arranged) => build_elsewhere(arranged, device, &plans, &missing, take)?,
             None => build_here(device, &plans, &missing, take)?,
         }
@@ -80,7 +82,7 @@ pub(super) fn build(device: &Device, orders: &[Order]) -> Result<Vec<Kernel>> {
     Ok(kernels.into_iter().flatten().collect())
 }
 
-/// In this process, one after another.
+/// Builds kernels in this process, one after another.
 fn build_here(
     device: &Device,
     plans: &[Plan],
@@ -93,7 +95,7 @@ fn build_here(
     Ok(())
 }
 
-/// In processes of their own, as many at once as there are processors.
+/// Builds kernels in processes of their own, as many at once as there are processors.
 fn build_elsewhere(
     arranged: &Arranged,
     device: &Device,
@@ -135,12 +137,12 @@ fn build_elsewhere(
     outcome
 }
 
-/// A kernel's source and options, and where its binary is kept.
+/// A kernel's source and options, and where its binary is cached.
 struct Plan<'a> {
     order: &'a Order<'a>,
     source: String,
     options: CString,
-    kept: Option<PathBuf>,
+    cached: Option<PathBuf>,
 }
 
 impl<'a> Plan<'a> {
@@ -149,19 +151,19 @@ impl<'a> Plan<'a> {
         // Drivers print their compiler's warnings, which are the tests' business, beside the program's own
         // words.
         let options = format!("{} -w", order.defines.options());
-        // A kept program is one whose arguments were compared with this signature: it does not say them.
-        let kept = (device.binaries()).path(device.info(), &source, &options, order.signature);
+        // A cached program is one whose arguments were compared with this signature: it does not report them.
+        let cached = (device.binaries()).path(device.info(), &source, &options, order.signature);
         Ok(Self {
             order,
             source,
             options: c_string(options)?,
-            kept,
+            cached,
         })
     }
 
-    /// From where built programs are kept.
-    fn kept(&self, device: &Device) -> Option<Kernel> {
-        let path = self.kept.as_deref()?;
+    /// The kernel from the cache of built programs.
+    fn cached(&self, device: &Device) -> Option<Kernel> {
+        let path = self.cached.as_deref()?;
         let binary = binary::read(path)?;
         crash::suspect(path);
         let kernel = self.taken_from(device, &binary)?;
@@ -178,9 +180,9 @@ impl<'a> Plan<'a> {
         core::create_kernel(&program, self.order.name).ok()
     }
 
-    fn keep(&self, binary: &[u8]) {
-        if let Some(path) = &self.kept {
-            binary::keep(path, binary);
+    fn store(&self, binary: &[u8]) {
+        if let Some(path) = &self.cached {
+            binary::store(path, binary);
             crash::suspect(path);
         }
     }
@@ -194,15 +196,14 @@ impl<'a> Plan<'a> {
         } = self.order;
         let program = compiled(device, &self.source, &self.options, path)?;
         let kernel = kernel_of(&program, name)?;
-        signature::check(&kernel, name, signature.iter().map(Parameter::as_told))?;
+        signature::check(&kernel, name, &as_texts(signature))?;
         if let Some(binary) = binary::of(&program) {
-            self.keep(&binary);
+            self.store(&binary);
         }
         Ok(kernel)
     }
 
     fn request(&self, device: &Device) -> Request {
-        let signature = self.order.signature.iter().map(Parameter::as_told);
         Request {
             device: device.info().id,
             identity: builder::identity(device.info()),
@@ -210,9 +211,7 @@ impl<'a> Plan<'a> {
             source: self.source.clone(),
             options: self.options.to_string_lossy().into_owned(),
             kernel: self.order.name.to_owned(),
-            signature: signature
-                .map(|(a, b)| (a.to_owned(), b.to_owned()))
-                .collect(),
+            signature: as_texts(self.order.signature),
         }
     }
 
@@ -221,7 +220,7 @@ impl<'a> Plan<'a> {
         if let Answer::Built(binary) = answer
             && let Some(kernel) = self.taken_from(device, &binary)
         {
-            self.keep(&binary);
+            self.store(&binary);
             return Ok(kernel);
         }
         self.built_here(device)
@@ -236,12 +235,7 @@ pub(super) fn binary_of(device: &Device, request: &Request) -> Result<Option<Vec
     let options = c_string(request.options.clone())?;
     let program = compiled(device, &request.source, &options, &request.path)?;
     let kernel = kernel_of(&program, &request.kernel)?;
-    let signature = request.signature.iter();
-    signature::check(
-        &kernel,
-        &request.kernel,
-        signature.map(|(name, type_name)| (name.as_str(), type_name.as_str())),
-    )?;
+    signature::check(&kernel, &request.kernel, &request.signature)?;
     Ok(binary::of(&program).map(|binary| binary::packed(&binary)))
 }
 

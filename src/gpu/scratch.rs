@@ -1,7 +1,7 @@
 //! A folder of this process alone, for what a driver writes while it builds.
 //!
 //! PoCL offers no device without a folder, loads what it finds in it without a check, and aborts where that
-//! is damaged. So each process gives it an empty one. What is kept from run to run is ours
+//! is damaged. So each process gives it an empty one. What is cached from run to run is ours
 //! ([`super::binary`]), and verified.
 
 use std::fs::{self, File};
@@ -23,7 +23,7 @@ const HELD: &str = "held";
 const BEING_MADE: Duration = Duration::from_secs(3600);
 
 /// The room in bytes that a place must have.
-const LEAST_ROOM: u64 = 64 << 20;
+const MIN_ROOM: u64 = 64 << 20;
 
 /// One folder, made when it is first needed, removed by [`Scratch::remove`].
 #[derive(Debug)]
@@ -151,7 +151,7 @@ fn is_fit(place: &Path) -> bool {
         use rustix::fs::{StatVfs, StatVfsMountFlags, statvfs};
         let is_fit = |mount: StatVfs| {
             !mount.f_flag.contains(StatVfsMountFlags::NOEXEC)
-                && mount.f_bavail.saturating_mul(mount.f_frsize) >= LEAST_ROOM
+                && mount.f_bavail.saturating_mul(mount.f_frsize) >= MIN_ROOM
         };
         if !statvfs(place).is_ok_and(is_fit) {
             return false;

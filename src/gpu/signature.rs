@@ -1,78 +1,56 @@
-//! What arguments a kernel takes, as its Rust function means it and as the built kernel tells it.
+//! The arguments that a kernel takes: as its Rust function gives them, and as the built kernel reports them.
+
+use std::fmt;
 
 use ocl::core::{self, Kernel, KernelArgInfo, KernelArgInfoResult, KernelInfo, KernelInfoResult};
 
 use crate::error::{Error, Result};
 
-use super::{Element, device_error};
+use super::status::device_error;
 
-/// One argument of a kernel, as its Rust function means it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Parameter {
-    pub(super) name: &'static str,
-    /// As OpenCL tells it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
-    pub(super) type_name: String,
+/// One argument of a kernel, as its Rust function gives it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Parameter {
+    pub name: &'static str,
+    pub of: ParameterType,
 }
 
-impl Parameter {
-    /// Its name and its type, as OpenCL gives them.
-    pub(super) fn as_told(&self) -> (&str, &str) {
-        (self.name, &self.type_name)
+/// The type of an argument; what is said of it is the element's name in OpenCL C.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ParameterType {
+    Buffer(&'static str),
+    Image,
+    Value(&'static str),
+}
+
+/// As OpenCL reports it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
+impl fmt::Display for ParameterType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Buffer(element) => write!(f, "{element}*"),
+            Self::Image => f.write_str("image3d_t"),
+            Self::Value(element) => f.write_str(element),
+        }
     }
 }
 
-/// A buffer that the pass reads.
-pub fn input<T: Element>(name: &'static str) -> Parameter {
-    input_of(name, T::CL_NAME)
+/// Names and types of a signature, as they are compared with a kernel's own and sent to other processes.
+pub(super) fn as_texts(signature: &[Parameter]) -> Vec<(String, String)> {
+    let text = |parameter: &Parameter| (parameter.name.to_owned(), parameter.of.to_string());
+    signature.iter().map(text).collect()
 }
 
-/// A buffer that the pass reads, its element type known at run time.
-pub fn input_of(name: &'static str, cl_name: &str) -> Parameter {
-    Parameter {
-        name,
-        type_name: format!("{cl_name}*"),
-    }
-}
-
-/// A buffer that the pass writes.
-pub fn output<T: Element>(name: &'static str) -> Parameter {
-    input::<T>(name)
-}
-
-/// A three-dimensional image that the pass reads.
-pub fn image(name: &'static str) -> Parameter {
-    Parameter {
-        name,
-        type_name: IMAGE.to_owned(),
-    }
-}
-
-/// As OpenCL tells an image's type.
-pub(super) const IMAGE: &str = "image3d_t";
-
-/// A number or struct handed over by value.
-pub fn value<T: Element>(name: &'static str) -> Parameter {
-    Parameter {
-        name,
-        type_name: T::CL_NAME.to_owned(),
-    }
-}
-
-/// Compares the kernel's own arguments with the names and types of a signature. Only kernels built from source tell them
-/// (OpenCL 1.2, §5.7.3).
+/// Compares the kernel's own arguments with the names and types of a signature. Only kernels built from
+/// source report them (OpenCL 1.2, §5.7.3).
 ///
 /// # Errors
-/// They differ, or the kernel does not tell.
-pub(super) fn check<'a>(
-    kernel: &Kernel,
-    name: &str,
-    signature: impl ExactSizeIterator<Item = (&'a str, &'a str)>,
-) -> Result<()> {
-    let does_not_tell = || Error::failed(format!("the pass {name} does not tell its arguments"));
+/// They differ, or the kernel does not report them.
+pub(super) fn check(kernel: &Kernel, name: &str, signature: &[(String, String)]) -> Result<()> {
+    let not_reported = || Error::failed(format!("the pass {name} does not report its arguments"));
     let KernelInfoResult::NumArgs(count) = core::get_kernel_info(kernel, KernelInfo::NumArgs)
         .map_err(|e| device_error("count a kernel's arguments", &e))?
     else {
-        return Err(does_not_tell());
+        return Err(not_reported());
     };
     if count as usize != signature.len() {
         return Err(Error::failed(format!(
@@ -80,18 +58,18 @@ pub(super) fn check<'a>(
             signature.len()
         )));
     }
-    for (index, (name_given, type_given)) in signature.enumerate() {
-        let ask = |what| {
+    for (index, (name_given, type_given)) in signature.iter().enumerate() {
+        let query = |what| {
             core::get_kernel_arg_info(kernel, index as u32, what, None)
-                .map_err(|e| device_error("ask for a kernel's arguments", &e))
+                .map_err(|e| device_error("query a kernel's arguments", &e))
         };
         let (KernelArgInfoResult::Name(name_there), KernelArgInfoResult::TypeName(type_there)) =
-            (ask(KernelArgInfo::Name)?, ask(KernelArgInfo::TypeName)?)
+            (query(KernelArgInfo::Name)?, query(KernelArgInfo::TypeName)?)
         else {
-            return Err(does_not_tell());
+            return Err(not_reported());
         };
         let type_there = type_there.trim_start_matches("struct ").replace(' ', "");
-        if name_there != name_given || type_there != type_given {
+        if name_there != *name_given || type_there != *type_given {
             return Err(Error::failed(format!(
                 "argument {index} of the pass {name} is '{type_there} {name_there}', its Rust function gives '{type_given} {name_given}'"
             )));

@@ -6,8 +6,9 @@ use ocl::core::{self, Event, ProfilingInfo};
 
 use crate::error::Result;
 
-use super::pass::{Pass, Waiting};
-use super::{Device, device_error};
+use super::device::Device;
+use super::pass::{Launch, Pass};
+use super::status::device_error;
 
 /// How long one pass ran on the device.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,15 +21,16 @@ pub struct PassTime {
 /// part of the device's time.
 #[derive(Default)]
 pub struct Timings {
-    waiting: Vec<Waiting>,
+    waiting: Vec<Launch>,
 }
 
 impl Timings {
-    pub(super) fn add(&mut self, launch: Waiting) {
+    /// Puts a launch at the end.
+    pub fn add(&mut self, launch: Launch) {
         self.waiting.push(launch);
     }
 
-    /// Builds the passes that are not built yet; gives the time in ms, 0 where there are none.
+    /// Builds the passes that are not built yet; returns the time in ms, 0 where there are none.
     ///
     /// # Errors
     /// One does not build.
@@ -40,7 +42,7 @@ impl Timings {
         }
     }
 
-    /// Builds what is not built, launches all and waits; gives each pass's time and the time from the first
+    /// Builds what is not built, launches all and waits; returns each pass's time and the time from the first
     /// launch's start to the last one's end, in ms.
     ///
     /// # Errors
@@ -50,8 +52,8 @@ impl Timings {
         let events = self.waiting.iter().map(|launch| launch.start(device));
         let events = events.collect::<Result<Vec<Event>>>()?;
         device.finish()?;
-        let at_ns = |event: &Event, moment| -> Result<u64> {
-            core::get_event_profiling_info(event, moment)
+        let at_ns = |event: &Event, point| -> Result<u64> {
+            core::get_event_profiling_info(event, point)
                 .map_err(|e| device_error("time a pass", &e))?
                 .time()
                 .map_err(|e| device_error("time a pass", &e))

@@ -24,11 +24,15 @@ mod tracer;
 pub use tone::display;
 pub use tracer::{Sight, Tracer};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::extent::ImageSize;
-use crate::frame::{Certificate, Frame, Kind, Wanted};
+use crate::frame::{
+    CERTIFICATE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layers, NORMAL, PlaneEntry, STEPS,
+    VALUE, Wanted,
+};
 use crate::progress::Progress;
 use crate::scene::{Picture, Scene};
 use crate::volume::Volume;
@@ -117,24 +121,21 @@ fn certificate(sight: &Sight, scene: &Scene) -> Certificate {
 
 /// Fills one pixel of every plane that is there.
 fn fill(frame: &mut Frame, pixel: usize, sight: &Sight, scene: &Scene) {
-    fn set<T>(plane: &mut Option<Vec<T>>, pixel: usize, value: impl FnOnce() -> T) {
-        if let Some(plane) = plane {
-            plane[pixel] = value();
+    fn set<T: PlaneEntry>(layers: &mut Layers, key: Key<T>, pixel: usize, entry: T) {
+        if let Some(plane) = layers.plane_mut(key) {
+            plane[pixel] = entry;
         }
     }
+    let narrowed = |v: DVec3| v.to_array().map(|c| c as f32);
     frame.color[pixel] = sight.color.map(|c| c as f32);
-    set(&mut frame.display, pixel, || {
-        display(sight.color, &scene.tone).map(|c| c as f32)
-    });
-    set(&mut frame.depth, pixel, || sight.depth_mm as f32);
-    set(&mut frame.normal, pixel, || {
-        sight.normal_world.to_array().map(|c| c as f32)
-    });
-    set(&mut frame.value, pixel, || sight.value as f32);
-    set(&mut frame.steps, pixel, || sight.cells);
-    set(&mut frame.nodes, pixel, || 0);
-    set(&mut frame.kind, pixel, || sight.kind as u32);
-    set(&mut frame.certificate, pixel, || {
-        certificate(sight, scene) as u32
-    });
+    if let Some(plane) = &mut frame.display {
+        plane[pixel] = display(sight.color, &scene.tone).map(|c| c as f32);
+    }
+    let layers = &mut frame.layers;
+    set(layers, DEPTH, pixel, sight.depth_mm as f32);
+    set(layers, NORMAL, pixel, narrowed(sight.normal_world));
+    set(layers, VALUE, pixel, sight.value as f32);
+    set(layers, STEPS, pixel, sight.cells);
+    set(layers, KIND, pixel, sight.kind as u32);
+    set(layers, CERTIFICATE, pixel, certificate(sight, scene) as u32);
 }

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
-use crate::frame::{Kind, Wanted};
+use crate::frame::{Kind, Layer, Wanted};
 use crate::scene::{Emission, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
 use crate::volume::{Rescale, Volume, Voxel};
 use crate::with_voxels;
@@ -94,7 +94,7 @@ impl<'a> Tracer<'a> {
                 }
                 _ => None,
             },
-            wanted: Wanted::default(),
+            wanted: Wanted::NONE,
         })
     }
 
@@ -232,16 +232,11 @@ impl<'a> Tracer<'a> {
         dir_world: DVec3,
     ) -> Sight {
         let kind = Kind::Surface;
-        let Wanted {
-            depth,
-            normal,
-            value,
-            ..
-        } = self.wanted;
-        if !(depth || normal || value) {
+        let means = [Layer::Depth, Layer::Normal, Layer::Value];
+        if !self.wanted.has_any(means) {
             return Sight { kind, ..seen };
         }
-        let normals = normal.then(|| Normals {
+        let normals = self.wanted.has(Layer::Normal).then(|| Normals {
             gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
             toward_eye: -dir_world,

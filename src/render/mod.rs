@@ -1,34 +1,15 @@
-//! Casting a scene on an OpenCL device: the upload, the passes, the pipeline.
+//! Casting a scene on an OpenCL device. Each folder uses only those before it: what host and kernels agree on
+//! (`abi`), what lies on the device (`resources`), what is known before a ray is cast (`occupancy`), the
+//! passes, and the frame that they make.
 
 mod abi;
-mod cells;
-mod classified;
-mod classify;
-mod clip;
-mod directions;
-mod emission;
-mod gradient;
-mod homogeneity;
-mod lanes;
-mod medium;
+mod frame;
+mod occupancy;
 mod passes;
-mod picture;
-mod pipeline;
-mod planes;
-mod ranges;
 mod ray_caster;
-mod rays;
-mod reach;
-mod room;
-mod twins;
-mod variant;
-mod voxels;
+mod resources;
 
-pub use directions::{AngleError, Directions};
-pub use gradient::GradientFigures;
-pub use lanes::Lanes;
-pub use pipeline::{Options, Renderer, Rendering, Sampled};
+pub use abi::{Lanes, Variant, struct_layouts};
+pub use frame::{Options, Renderer, Rendering, Sampled, check_picture, check_volume};
 pub use ray_caster::{FirstCrossing, RayCaster};
-pub use room::{check_picture, check_volume};
-pub use twins::struct_layouts;
-pub use variant::Variant;
+pub use resources::{AngleError, Directions, GradientFigures};

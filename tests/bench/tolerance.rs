@@ -6,7 +6,7 @@ use crate::common;
 
 use angioray::extent::Dims;
 use angioray::frame::error::{color_error, depth_error, value_error};
-use angioray::frame::{Frame, Wanted, read_metadata};
+use angioray::frame::{Frame, Layer, Wanted, read_metadata};
 use angioray::lab::tolerance::{Choice, Task, candidates, choose};
 use angioray::octree::Octree;
 use angioray::progress::Silent;
@@ -16,15 +16,7 @@ use angioray::scene::{ErrorBound, ErrorMetric, Mode, SceneOptions, Subject};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use cli_place::{Place, stderr};
 
-const WANTED: Wanted = Wanted {
-    display: true,
-    depth: true,
-    normal: false,
-    value: true,
-    counters: false,
-    kind: false,
-    certificate: false,
-};
+const WANTED: Wanted = Wanted::DISPLAY.with([Layer::Depth, Layer::Value]);
 
 fn vessels() -> Volume {
     let spec = PhantomSpec::new(PhantomKind::Vessels, Dims::new([40; 3]).unwrap());
@@ -83,10 +75,7 @@ fn task<'a>(
         subject,
         options,
         bound: bound.parse().unwrap(),
-        wanted: Wanted {
-            display: true,
-            ..Wanted::default()
-        },
+        wanted: Wanted::DISPLAY,
         seed: 5,
         elsewhere: &[],
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{DEPTH, Frame, KIND, NORMAL, Plane, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
@@ -220,7 +220,7 @@ impl Figure {
 
 /// Pixels that met another kind of thing.
 pub fn differing_pixels(truth: &Frame, frame: &Frame) -> usize {
-    let (truth, frame) = (truth.kind.as_ref().unwrap(), frame.kind.as_ref().unwrap());
+    let (truth, frame) = (truth.plane(KIND).unwrap(), frame.plane(KIND).unwrap());
     truth.iter().zip(frame).filter(|(a, b)| a != b).count()
 }
 
@@ -243,28 +243,40 @@ pub fn moved_by_a_pixel(frame: &Frame) -> Frame {
     let mut frame = frame.clone();
     moved(&mut frame.color, width);
     frame.display.iter_mut().for_each(|p| moved(p, width));
-    frame.depth.iter_mut().for_each(|p| moved(p, width));
-    frame.normal.iter_mut().for_each(|p| moved(p, width));
-    frame.value.iter_mut().for_each(|p| moved(p, width));
-    frame.kind.iter_mut().for_each(|p| moved(p, width));
+    for (_, plane) in frame.layers.iter_mut() {
+        match plane {
+            Plane::Scalars(plane) => moved(plane, width),
+            Plane::Vectors(plane) => moved(plane, width),
+            Plane::Counts(plane) => moved(plane, width),
+        }
+    }
     frame
 }
 
 /// That no plane holds a NaN, and only depth infinities.
 pub fn assert_sound(what: &str, frame: &Frame) {
     let finite = |name: &str, sound: bool| assert!(sound, "{what}: {name} is not finite");
-    let planes = (&frame.display, &frame.normal, &frame.value);
+    let (normals, values) = (frame.plane(NORMAL), frame.plane(VALUE));
     finite("color", frame.color.iter().flatten().all(|v| v.is_finite()));
     finite(
         "display",
-        planes.0.iter().flatten().flatten().all(|v| v.is_finite()),
+        frame
+            .display
+            .iter()
+            .flatten()
+            .flatten()
+            .all(|v| v.is_finite()),
     );
     finite(
         "normal",
-        planes.1.iter().flatten().flatten().all(|v| v.is_finite()),
+        normals
+            .into_iter()
+            .flatten()
+            .flatten()
+            .all(|v| v.is_finite()),
     );
-    finite("value", planes.2.iter().flatten().all(|v| v.is_finite()));
-    let mut depths = frame.depth.iter().flatten();
+    finite("value", values.into_iter().flatten().all(|v| v.is_finite()));
+    let mut depths = frame.plane(DEPTH).into_iter().flatten();
     assert!(
         depths.all(|d| *d >= 0.0),
         "{what}: a depth is NaN or negative"

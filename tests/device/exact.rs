@@ -8,7 +8,7 @@ use crate::common;
 
 use angioray::extent::Dims;
 use angioray::frame::error::{depth_error, value_error};
-use angioray::frame::{Certificate, Frame, Wanted};
+use angioray::frame::{CERTIFICATE, Certificate, DEPTH, Frame, VALUE, Wanted};
 use angioray::lab::measure::{Borderline, Closeness, excuse_dips};
 use angioray::progress::Silent;
 use angioray::reference;
@@ -90,10 +90,10 @@ impl Subject<'_> {
         let voxel_mm = self.volume.geometry().smallest_spacing_mm();
         let error = depth_error(&reference, &frame, voxel_mm).unwrap();
         let depths = reference
-            .depth
-            .iter()
+            .plane(DEPTH)
+            .into_iter()
             .flatten()
-            .zip(frame.depth.iter().flatten());
+            .zip(frame.plane(DEPTH).into_iter().flatten());
         let mut differences: Vec<f64> = depths
             .filter(|(a, b)| a.is_finite() && b.is_finite())
             .map(|(&a, &b)| (f64::from(a) - f64::from(b)).abs() / voxel_mm)
@@ -118,8 +118,8 @@ impl Subject<'_> {
         let (reference, mut frame) = self.both(&scene);
         let local = matches!(of, Projection::LocalMaximum { .. });
         if local && method == SamplingMethod::Exact {
-            let references = reference.value.as_ref().unwrap();
-            let own = frame.value.as_mut().unwrap();
+            let references = reference.plane(VALUE).unwrap();
+            let own = frame.plane_mut(VALUE).unwrap();
             let close = VALUE_MAX * range.width();
             excuse_dips(self.volume, &scene, references, own, close).unwrap();
             let wrong = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > close;
@@ -130,7 +130,7 @@ impl Subject<'_> {
                 .count();
             assert!(pixels <= SHALLOW_DIPS, "{}: {pixels} pixels", self.name);
             if pixels > 0 {
-                frame.value.clone_from(&reference.value);
+                own.copy_from_slice(references);
             }
         }
         let error = value_error(&reference, &frame, range.width()).unwrap();
@@ -141,9 +141,9 @@ impl Subject<'_> {
 
 /// Pixels whose certificate says what is not so.
 fn disproven(reference: &Frame, frame: &Frame) -> usize {
-    let certificates = frame.certificate.iter().flatten();
+    let certificates = frame.plane(CERTIFICATE).into_iter().flatten();
     certificates
-        .zip(reference.certificate.iter().flatten())
+        .zip(reference.plane(CERTIFICATE).into_iter().flatten())
         .filter(|&(&own, &true_one)| own != Certificate::Undecided as u32 && own != true_one)
         .count()
 }

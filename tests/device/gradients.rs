@@ -4,7 +4,7 @@
 use crate::common;
 
 use angioray::extent::ImageSize;
-use angioray::frame::{Frame, Kind};
+use angioray::frame::{DEPTH, Frame, KIND, Kind, NORMAL};
 use angioray::octree::Octree;
 use angioray::render::{Directions, Options, Renderer};
 use angioray::scene::{Camera, Gradient, Lens, Phong, Picture, Precomputed, Refine, Rgb, Scene};
@@ -41,12 +41,12 @@ fn frames(volume: &Volume, scenes: &[Scene]) -> Vec<(&'static str, Vec<Frame>)> 
 /// World coordinates where the rays of a frame hit, with their normals.
 fn hits(scene: &Scene, frame: &Frame) -> Vec<(DVec3, DVec3)> {
     let width = scene.size.width();
-    let kinds = frame.kind.iter().flatten();
+    let kinds = frame.plane(KIND).into_iter().flatten();
     let planes = frame
-        .depth
-        .iter()
+        .plane(DEPTH)
+        .into_iter()
         .flatten()
-        .zip(frame.normal.iter().flatten());
+        .zip(frame.plane(NORMAL).into_iter().flatten());
     let pixels = kinds.zip(planes).enumerate();
     let met = pixels.filter(|(_, (kind, _))| **kind == Kind::Surface as u32);
     met.map(|(pixel, (_, (&depth_mm, normal)))| {
@@ -232,8 +232,8 @@ fn precomputed_gradients_say_how_far_off_they_are() {
         let grid = [61u64, 35, 23].map(|n| (n - 1).div_ceil(u64::from(scale)) + 1);
         assert_eq!(figures.bytes, 6 * grid.iter().product::<u64>());
         assert!(rendering.device_bytes >= central.device_bytes + figures.bytes);
-        let pairs = central.frame.normal.iter().flatten();
-        let pairs = pairs.zip(rendering.frame.normal.iter().flatten());
+        let pairs = central.frame.plane(NORMAL).into_iter().flatten();
+        let pairs = pairs.zip(rendering.frame.plane(NORMAL).into_iter().flatten());
         let angles: Vec<f64> = pairs
             .map(|(a, b)| [a, b].map(|n| DVec3::from_array(n.map(f64::from))))
             .filter(|[a, _]| *a != DVec3::ZERO)

@@ -6,7 +6,7 @@ use crate::common;
 use std::path::PathBuf;
 
 use angioray::extent::Dims;
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{Frame, STEPS, Wanted};
 use angioray::gpu::Device;
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
@@ -28,8 +28,8 @@ fn transfer(points: &[(f64, f64)], unit_mm: f64) -> TransferFunction {
     TransferFunction::new(points.iter().map(knot).collect(), unit_mm).unwrap()
 }
 
-fn total(counter: &Option<Vec<u32>>) -> u64 {
-    counter.iter().flatten().map(|&n| u64::from(n)).sum()
+fn total(counter: Option<&[u32]>) -> u64 {
+    counter.into_iter().flatten().map(|&n| u64::from(n)).sum()
 }
 
 /// The largest difference of any channel of premultiplied linear light and opacity.
@@ -61,7 +61,7 @@ fn change(
     };
     let (plain, taken) = (render(None), render(Some(homogeneity)));
     common::assert_sound("homogeneous", &taken);
-    let [before, after] = [&plain, &taken].map(|frame| total(&frame.steps) as f64);
+    let [before, after] = [&plain, &taken].map(|frame| total(frame.plane(STEPS)) as f64);
     Change {
         error: apart(&plain, &taken),
         saved: 1.0 - after / before,
@@ -238,7 +238,7 @@ fn averaging_nothing_or_little_takes_no_more_samples() {
                 counted(&mut renderer, &volume, &emission, homogeneity)
             };
             let (off, fine, coarse) = (render(None), render(Some(1e-6)), render(Some(1.0)));
-            let [off_samples, fine_samples] = [&off, &fine].map(|frame| total(&frame.steps));
+            let [off_samples, fine_samples] = [&off, &fine].map(|frame| total(frame.plane(STEPS)));
             if same == 0.0 {
                 assert!(fine == off, "{method}");
             } else {
@@ -282,11 +282,7 @@ fn skipping_and_traversal_do_not_change_a_bit_of_it() {
         let mut scene = common::scene(&volume, 72, picture(homogeneity));
         scene.sampling.skip = skip;
         scene.sampling.traverse = traverse;
-        renderer
-            .render(&scene, Wanted::default())
-            .unwrap()
-            .frame
-            .color
+        renderer.render(&scene, Wanted::NONE).unwrap().frame.color
     };
     let whole = render(Some(homogeneity), false, Traverse::Uniform);
     for traverse in [
@@ -330,7 +326,7 @@ fn shading_and_the_adaptive_rule_are_refused() {
     };
     for (emission, allowed) in [(plain, true), (shaded, false), (adaptive, false)] {
         let scene = common::scene(&volume, 8, Picture::Emission(emission));
-        let rendered = renderer.render(&scene, Wanted::default());
+        let rendered = renderer.render(&scene, Wanted::NONE);
         assert_eq!(
             rendered.map_err(|e| e.exit_code()).err(),
             (!allowed).then_some(2)
@@ -350,7 +346,7 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
         let file = TransferFile::named(preset).unwrap();
         let transfer = file.transfer_function(volume.range()).unwrap();
         let scene = common::scene(&volume, 8, Picture::Emission(Emission::of(transfer)));
-        let rendering = renderer.render(&scene, Wanted::default()).unwrap();
+        let rendering = renderer.render(&scene, Wanted::NONE).unwrap();
         assert_eq!(
             rendering.classify_ms > 0.0,
             rendering.uploaded_bytes > 10_000
@@ -384,7 +380,7 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
             phong: None,
         };
         let scene = common::scene(&volume, 8, surface);
-        let rendering = renderer.render(&scene, Wanted::default()).unwrap();
+        let rendering = renderer.render(&scene, Wanted::NONE).unwrap();
         (rendering.device_bytes, rendering.classify_ms > 0.0)
     };
     let bytes: Vec<u64> = (0..12)

@@ -4,7 +4,7 @@
 
 use crate::common;
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{CERTIFICATE, DEPTH, Frame, KIND, NODES, NORMAL, STEPS, VALUE, Wanted};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Lanes, Options, Renderer};
@@ -93,16 +93,23 @@ fn picture_bits(frame: &Frame) -> Vec<u32> {
     let bits = |v: &f32| v.to_bits();
     let mut all: Vec<u32> = frame.color.iter().flatten().map(bits).collect();
     all.extend(frame.display.iter().flatten().flatten().map(bits));
-    all.extend(frame.depth.iter().flatten().map(bits));
-    all.extend(frame.normal.iter().flatten().flatten().map(bits));
-    all.extend(frame.value.iter().flatten().map(bits));
-    all.extend(frame.kind.iter().flatten());
-    all.extend(frame.certificate.iter().flatten());
+    all.extend(frame.plane(DEPTH).into_iter().flatten().map(bits));
+    all.extend(
+        frame
+            .plane(NORMAL)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(bits),
+    );
+    all.extend(frame.plane(VALUE).into_iter().flatten().map(bits));
+    all.extend(frame.plane(KIND).into_iter().flatten());
+    all.extend(frame.plane(CERTIFICATE).into_iter().flatten());
     all
 }
 
-fn total(counter: &Option<Vec<u32>>) -> u64 {
-    counter.iter().flatten().map(|&n| u64::from(n)).sum()
+fn total(counter: Option<&[u32]>) -> u64 {
+    counter.into_iter().flatten().map(|&n| u64::from(n)).sum()
 }
 
 /// Renders every picture with both filters, by steps and exactly where it can be, under one way of
@@ -160,7 +167,7 @@ fn skipping_and_traversal_never_change_a_bit() {
                         frame.color.iter().any(|c| c[3] > 0.0),
                         "{name} {what}: nothing to see"
                     );
-                    assert_eq!(total(&frame.nodes), 0);
+                    assert_eq!(total(frame.plane(NODES)), 0);
                 }
             }
             let mut nodes_told = Vec::new();
@@ -170,13 +177,16 @@ fn skipping_and_traversal_never_change_a_bit() {
                     let what = format!("{name} {what} leaf {leaf} {traverse:?}");
                     assert!(picture_bits(skipped) == picture_bits(whole), "{what}");
                     let skips = !what.contains("mean");
-                    assert_eq!(total(&skipped.nodes) > 0, skips, "{what}");
+                    assert_eq!(total(skipped.plane(NODES)) > 0, skips, "{what}");
                     if name == "tubes" && skips && !what.contains("minip") {
                         // Skipping is real.
-                        assert!(total(&skipped.steps) < total(&whole.steps), "{what}");
+                        assert!(
+                            total(skipped.plane(STEPS)) < total(whole.plane(STEPS)),
+                            "{what}"
+                        );
                     }
                 }
-                nodes_told.push(total(&skipped[0].1.nodes));
+                nodes_told.push(total(skipped[0].1.plane(NODES)));
             }
             // The counters tell the traversals apart, where there are nodes to skip.
             nodes_told.sort_unstable();
@@ -233,11 +243,11 @@ fn skipping_never_changes_a_bit_under_any_quadrature() {
                 let skipped = render(true, traverse);
                 let what = format!("{method} {filter:?} {traverse:?}");
                 assert!(picture_bits(&skipped) == picture_bits(&whole), "{what}");
-                assert!(total(&skipped.nodes) > 0, "{what}");
+                assert!(total(skipped.plane(NODES)) > 0, "{what}");
                 // The adaptive rule asks each cell itself.
                 let stepped = method != QuadratureMethod::Adaptive;
                 assert!(
-                    !stepped || total(&skipped.steps) < total(&whole.steps),
+                    !stepped || total(skipped.plane(STEPS)) < total(whole.plane(STEPS)),
                     "{what}"
                 );
             }

@@ -4,7 +4,7 @@
 use crate::common;
 
 use angioray::extent::{Dims, ImageSize};
-use angioray::frame::Frame;
+use angioray::frame::{DEPTH, Frame, KIND, NORMAL, VALUE};
 use angioray::scene::{
     Camera, Emission, Knot, Lens, Orientation, Phong, Picture, Projection, Refine, Rgb, Scene,
     TransferFunction, View, Window,
@@ -140,7 +140,7 @@ fn volume_and_camera_turned_together_give_the_same_picture() {
         let mut upright = frames.clone();
         for normal in upright
             .iter_mut()
-            .flat_map(|f| f.normal.iter_mut().flatten())
+            .flat_map(|f| f.plane_mut(NORMAL).into_iter().flatten())
         {
             let n = back * DVec3::from_array(normal.map(f64::from));
             *normal = n.to_array().map(|c| c as f32);
@@ -179,8 +179,12 @@ fn twice_the_spacing_from_twice_as_far_is_the_same_picture() {
     for (near, far) in near_frames.iter().zip(&far_frames) {
         assert!(AlphaMax.of(near, far, &volume) < 1e-6);
         assert!(ColorMean.of(near, far, &volume) < 1e-6);
-        assert_eq!(near.kind, far.kind);
-        let depths = near.depth.iter().flatten().zip(far.depth.iter().flatten());
+        assert_eq!(near.plane(KIND), far.plane(KIND));
+        let depths = near
+            .plane(DEPTH)
+            .into_iter()
+            .flatten()
+            .zip(far.plane(DEPTH).into_iter().flatten());
         for (&a, &b) in depths.filter(|(a, _)| a.is_finite()) {
             assert!((b / a - 2.0).abs() < 1e-5, "{a} and {b}");
         }
@@ -219,7 +223,7 @@ fn a_left_handed_volume_is_not_mirrored() {
             30.0,
         );
         let width = SIZE_PX as usize;
-        let value = |column: usize| frame.value.as_ref().unwrap()[row * width + column];
+        let value = |column: usize| frame.plane(VALUE).unwrap()[row * width + column];
         assert!(
             value(column) > 100.0,
             "mirrored {mirrored}: {}",

@@ -4,7 +4,7 @@
 use crate::common;
 
 use angioray::extent::ImageSize;
-use angioray::frame::Wanted;
+use angioray::frame::{DEPTH, STEPS, Wanted};
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
     Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, SamplingMethod,
@@ -79,7 +79,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;
-    let depth_mm = frame.depth.unwrap();
+    let depth_mm = frame.plane(DEPTH).unwrap();
     let errors = depth_mm
         .iter()
         .enumerate()
@@ -89,7 +89,12 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         .collect();
     (
         errors,
-        frame.steps.unwrap().iter().map(|&n| u64::from(n)).sum(),
+        frame
+            .plane(STEPS)
+            .unwrap()
+            .iter()
+            .map(|&n| u64::from(n))
+            .sum(),
     )
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{Frame, STEPS, Wanted};
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
     Emission, Knot, Picture, Quadrature, QuadratureMethod, Rgb, TransferFunction,
@@ -49,7 +49,12 @@ fn what_is_lost_stays_below_the_bound_and_samples_are_saved() {
     let mut render = |method, termination| {
         let scene = common::scene(&volume, 48, mist_before_fog(method, termination));
         let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;
-        let samples: u64 = frame.steps.iter().flatten().map(|&n| u64::from(n)).sum();
+        let samples: u64 = frame
+            .plane(STEPS)
+            .into_iter()
+            .flatten()
+            .map(|&n| u64::from(n))
+            .sum();
         (frame, samples)
     };
     for method in QuadratureMethod::ALL {

@@ -5,7 +5,7 @@
 use crate::common;
 
 use angioray::extent::ImageSize;
-use angioray::frame::Wanted;
+use angioray::frame::{VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::octree::Octree;
 use angioray::render::{Options, Renderer};
@@ -68,9 +68,9 @@ where
     scene.sampling.filter = Filter::Nearest;
     scene.sampling.voxels = Storage::Image;
     let wrong = |scene: &Scene, renderer: &mut Renderer| -> usize {
-        let seen = renderer.render(scene, Wanted::ALL).unwrap().frame.value;
-        let seen = seen.unwrap();
-        let pairs = values.iter().zip(&seen);
+        let seen = renderer.render(scene, Wanted::ALL).unwrap().frame;
+        let seen = seen.plane(VALUE).unwrap();
+        let pairs = values.iter().zip(seen);
         pairs
             .filter(|(value, seen)| (**value).into() != f64::from(**seen))
             .count()

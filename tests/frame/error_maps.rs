@@ -9,7 +9,7 @@ use angioray::frame::error::{
     Entry, ErrorMap, Quantity, Scale, color_error, depth_error, normal_error, value_error,
 };
 use angioray::frame::palette::{Rgb, cool_warm};
-use angioray::frame::{Frame, read_metadata};
+use angioray::frame::{DEPTH, Frame, Layers, NORMAL, VALUE, read_metadata};
 use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 
 const INF: f32 = f32::INFINITY;
@@ -23,23 +23,21 @@ const RED: Rgb = [180, 4, 38];
 
 /// A row of pixels that nothing was hit in.
 fn row(width: usize) -> Frame {
+    let mut layers = Layers::default();
+    layers.insert(DEPTH, vec![INF; width]);
+    layers.insert(NORMAL, vec![[0.0; 3]; width]);
+    layers.insert(VALUE, vec![0.0; width]);
     Frame {
         size: ImageSize::new(width as u32, 1).unwrap(),
         color: vec![[0.0; 4]; width],
         display: Some(vec![[0.0, 0.0, 0.0, 1.0]; width]),
-        depth: Some(vec![INF; width]),
-        normal: Some(vec![[0.0; 3]; width]),
-        value: Some(vec![0.0; width]),
-        steps: None,
-        nodes: None,
-        kind: None,
-        certificate: None,
+        layers,
     }
 }
 
 fn with_depth(depth: &[f32]) -> Frame {
     let mut frame = row(depth.len());
-    frame.depth = Some(depth.to_vec());
+    frame.layers.insert(DEPTH, depth.to_vec());
     frame
 }
 
@@ -139,10 +137,10 @@ fn values_are_shares_of_the_range_where_both_cover() {
     for (frame, pixels, value) in [(&mut reference, 0..3, 100.0), (&mut other, 1..4, 90.0)] {
         for pixel in pixels {
             frame.color[pixel][3] = 1.0;
-            frame.value.as_mut().unwrap()[pixel] = value;
+            frame.plane_mut(VALUE).unwrap()[pixel] = value;
         }
     }
-    other.value.as_mut().unwrap()[2] = 100.0;
+    other.plane_mut(VALUE).unwrap()[2] = 100.0;
     let map = map(Quantity::Value, &reference, &other);
     assert_eq!(
         map.entries,
@@ -159,8 +157,9 @@ fn values_are_shares_of_the_range_where_both_cover() {
 fn angles_have_no_sign_and_run_from_grey_to_red() {
     let (mut reference, mut other) = (row(4), row(4));
     let x = [1.0, 0.0, 0.0];
-    reference.normal = Some(vec![x, x, x, [0.0; 3]]);
-    other.normal = Some(vec![x, [1.0, -1.0, 0.0], [0.0, 0.0, 1.0], x]);
+    reference.layers.insert(NORMAL, vec![x, x, x, [0.0; 3]]);
+    let turned = vec![x, [1.0, -1.0, 0.0], [0.0, 0.0, 1.0], x];
+    other.layers.insert(NORMAL, turned);
     let map = map(Quantity::Normal, &reference, &other);
     let expected = [Some(0.0), Some(45.0), Some(90.0), None];
     for (angle, expected) in differences(&map).into_iter().zip(expected) {
@@ -298,9 +297,9 @@ fn maps_agree_with_the_figures() {
         for (frame, v, gap) in [(&mut reference, a, 5), (&mut other, b, 7)] {
             if pixel % gap != 0 {
                 frame.color[pixel][3] = 1.0;
-                frame.depth.as_mut().unwrap()[pixel] = 100.0 + v;
-                frame.value.as_mut().unwrap()[pixel] = v;
-                frame.normal.as_mut().unwrap()[pixel] = [v, 100.0, 0.0];
+                frame.plane_mut(DEPTH).unwrap()[pixel] = 100.0 + v;
+                frame.plane_mut(VALUE).unwrap()[pixel] = v;
+                frame.plane_mut(NORMAL).unwrap()[pixel] = [v, 100.0, 0.0];
             }
         }
     }
@@ -334,16 +333,14 @@ fn what_cannot_be_mapped_is_an_error() {
     ];
     let bare = Frame {
         display: None,
-        depth: None,
-        normal: None,
-        value: None,
+        layers: Layers::default(),
         ..good.clone()
     };
     let mut bad = good.clone();
     bad.display.as_mut().unwrap()[2][1] = f32::NAN;
-    bad.depth.as_mut().unwrap()[2] = f32::NAN;
-    bad.normal.as_mut().unwrap()[2][0] = f32::NAN;
-    bad.value.as_mut().unwrap()[2] = f32::NAN;
+    bad.plane_mut(DEPTH).unwrap()[2] = f32::NAN;
+    bad.plane_mut(NORMAL).unwrap()[2][0] = f32::NAN;
+    bad.plane_mut(VALUE).unwrap()[2] = f32::NAN;
     for quantity in all {
         let of = |a: &Frame, b: &Frame| ErrorMap::new(quantity, a, b, SCALE);
         assert!(of(&good, &good).is_ok());

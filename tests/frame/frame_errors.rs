@@ -1,24 +1,22 @@
 //! The error figures against hand-computed cases and against numpy and scikit-image.
 
 use angioray::extent::ImageSize;
-use angioray::frame::Frame;
 use angioray::frame::error::{color_error, depth_error, normal_error, value_error};
+use angioray::frame::{DEPTH, Frame, Layers, NORMAL, VALUE};
 
 /// A picture in which no ray met anything, with the planes that are compared.
 fn frame(width: u32, height: u32) -> Frame {
     let size = ImageSize::new(width, height).unwrap();
     let pixels = size.pixels();
+    let mut layers = Layers::default();
+    layers.insert(DEPTH, vec![f32::INFINITY; pixels]);
+    layers.insert(NORMAL, vec![[0.0; 3]; pixels]);
+    layers.insert(VALUE, vec![0.0; pixels]);
     Frame {
         size,
         color: vec![[0.0; 4]; pixels],
         display: Some(vec![[0.0, 0.0, 0.0, 1.0]; pixels]),
-        depth: Some(vec![f32::INFINITY; pixels]),
-        normal: Some(vec![[0.0; 3]; pixels]),
-        value: Some(vec![0.0; pixels]),
-        steps: None,
-        nodes: None,
-        kind: None,
-        certificate: None,
+        layers,
     }
 }
 
@@ -33,13 +31,13 @@ fn with_display(width: u32, height: u32, at: impl Fn(usize) -> [f32; 3]) -> Fram
 
 fn with_depth(depth: &[f32]) -> Frame {
     let mut frame = frame(depth.len() as u32, 1);
-    frame.depth = Some(depth.to_vec());
+    frame.layers.insert(DEPTH, depth.to_vec());
     frame
 }
 
 fn with_normals(normal: &[[f32; 3]]) -> Frame {
     let mut frame = frame(normal.len() as u32, 1);
-    frame.normal = Some(normal.to_vec());
+    frame.layers.insert(NORMAL, normal.to_vec());
     frame
 }
 
@@ -49,7 +47,7 @@ fn with_values(values: &[Option<f32>]) -> Frame {
     for (pixel, value) in values.iter().enumerate() {
         if let Some(value) = value {
             frame.color[pixel] = [0.0, 0.0, 0.0, 1.0];
-            frame.value.as_mut().unwrap()[pixel] = *value;
+            frame.plane_mut(VALUE).unwrap()[pixel] = *value;
         }
     }
     frame
@@ -214,9 +212,7 @@ fn what_cannot_be_compared_is_an_error() {
     let other_size = with_display(2, 4, |_| [0.5; 3]);
     let bare = Frame {
         display: None,
-        depth: None,
-        normal: None,
-        value: None,
+        layers: Layers::default(),
         ..good.clone()
     };
     let compare = |a: &Frame, b: &Frame| {
@@ -242,7 +238,9 @@ fn what_cannot_be_compared_is_an_error() {
         );
     }
     let mut short = good.clone();
-    short.value.as_mut().unwrap().pop();
+    let mut values = short.layers.take(VALUE).unwrap();
+    values.pop();
+    short.layers.insert(VALUE, values);
     assert!(compare(&good, &short).iter().all(Option::is_some));
 
     for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -257,9 +255,9 @@ fn a_nan_pixel_is_named_not_skipped() {
     for poison in [f32::NAN, f32::NEG_INFINITY] {
         let mut bad = good.clone();
         bad.display.as_mut().unwrap()[6][1] = poison;
-        bad.depth.as_mut().unwrap()[6] = poison;
-        bad.normal.as_mut().unwrap()[6][2] = poison;
-        bad.value.as_mut().unwrap()[6] = poison;
+        bad.plane_mut(DEPTH).unwrap()[6] = poison;
+        bad.plane_mut(NORMAL).unwrap()[6][2] = poison;
+        bad.plane_mut(VALUE).unwrap()[6] = poison;
         for (a, b) in [(&good, &bad), (&bad, &good)] {
             let errors = [
                 color_error(a, b).err(),
@@ -296,15 +294,15 @@ fn patterns() -> (Frame, Frame) {
         let along = |angle: f64| [angle.cos() as f32, angle.sin() as f32, 0.0];
         if !k.is_multiple_of(5) {
             reference.color[k][3] = 1.0;
-            reference.depth.as_mut().unwrap()[k] = depth;
-            reference.value.as_mut().unwrap()[k] = value;
-            reference.normal.as_mut().unwrap()[k] = along(angle);
+            reference.plane_mut(DEPTH).unwrap()[k] = depth;
+            reference.plane_mut(VALUE).unwrap()[k] = value;
+            reference.plane_mut(NORMAL).unwrap()[k] = along(angle);
         }
         if !k.is_multiple_of(7) {
             other.color[k][3] = 1.0;
-            other.depth.as_mut().unwrap()[k] = moved;
-            other.value.as_mut().unwrap()[k] = shifted;
-            other.normal.as_mut().unwrap()[k] = along(turned);
+            other.plane_mut(DEPTH).unwrap()[k] = moved;
+            other.plane_mut(VALUE).unwrap()[k] = shifted;
+            other.plane_mut(NORMAL).unwrap()[k] = along(turned);
         }
     }
     (reference, other)

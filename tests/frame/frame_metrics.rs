@@ -2,10 +2,10 @@
 //! FLIP, and where there is nothing to compare.
 
 use angioray::extent::ImageSize;
-use angioray::frame::Frame;
 use angioray::frame::error::{
     Scale, color_error, depth_error, figures, flip, normal_error, ssim, value_error,
 };
+use angioray::frame::{DEPTH, Frame, Layers, NORMAL, VALUE};
 
 fn picture(width: u32, height: u32, at: impl Fn(i64, i64, i64) -> f64) -> Frame {
     let size = ImageSize::new(width, height).unwrap();
@@ -19,13 +19,7 @@ fn picture(width: u32, height: u32, at: impl Fn(i64, i64, i64) -> f64) -> Frame 
         size,
         color: vec![[0.0; 4]; size.pixels()],
         display: Some((0..pixels).map(display).collect()),
-        depth: None,
-        normal: None,
-        value: None,
-        steps: None,
-        nodes: None,
-        kind: None,
-        certificate: None,
+        layers: Layers::default(),
     }
 }
 
@@ -222,13 +216,13 @@ fn complete() -> (Frame, Frame) {
         let mut frame = picture(12, 11, move |x, _, _| f64::from(share) * x as f64 / 11.0);
         let pixels = frame.size.pixels();
         frame.color = vec![[0.0, 0.0, 0.0, 1.0]; pixels];
-        frame.depth = Some(vec![100.0 + share; pixels]);
-        frame.normal = Some(vec![[1.0, share, 0.0]; pixels]);
-        frame.value = Some(vec![20.0 * share; pixels]);
+        frame.layers.insert(DEPTH, vec![100.0 + share; pixels]);
+        frame.layers.insert(NORMAL, vec![[1.0, share, 0.0]; pixels]);
+        frame.layers.insert(VALUE, vec![20.0 * share; pixels]);
         frame
     };
     let (mut reference, other) = (frame(0.5), frame(1.0));
-    reference.depth.as_mut().unwrap()[7] = f32::INFINITY;
+    reference.plane_mut(DEPTH).unwrap()[7] = f32::INFINITY;
     (reference, other)
 }
 
@@ -252,10 +246,11 @@ fn figures_are_those_of_their_functions() {
 #[test]
 fn a_figure_needs_its_plane_in_both_pictures() {
     let (reference, other) = complete();
-    let without = |frame: &Frame| Frame {
-        display: None,
-        value: None,
-        ..frame.clone()
+    let without = |frame: &Frame| {
+        let mut frame = frame.clone();
+        frame.display = None;
+        frame.layers.take(VALUE);
+        frame
     };
     for (a, b) in [
         (&without(&reference), &other),

@@ -1,5 +1,6 @@
 //! Rays: cases 1 to 5. Case 6, that every loop ends, is `aimed::hostile_rays_end`.
 
+use angioray::frame::{DEPTH, KIND};
 use angioray::lab::hardcases::HardCase;
 use angioray::scene::{Camera, Scene};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
@@ -130,7 +131,10 @@ fn same_bump(seen: &Seen) -> Vec<String> {
     let scenes = resolved(case, &unit);
     let (_, scene) = scenes.iter().find(|(name, _)| name == seen.name).unwrap();
     let expected = on_reference(&unit, scene);
-    let (kind, depth) = (expected.kind.unwrap(), expected.depth.unwrap());
+    let (kind, depth) = (
+        expected.plane(KIND).unwrap(),
+        expected.plane(DEPTH).unwrap(),
+    );
     let spacing = seen.volume.geometry().smallest_spacing_mm();
     let mut lines = Vec::new();
     for pixel in 0..seen.pixels() {

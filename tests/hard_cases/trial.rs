@@ -1,6 +1,6 @@
 //! One hard case on trial: its scenes rendered on device and reference and checked, then its mutants.
 
-use angioray::frame::{Frame, Kind, Wanted};
+use angioray::frame::{DEPTH, Frame, KIND, Kind, NORMAL, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::lab::hardcases::HardCase;
 use angioray::lab::measure::{Answer, HitJudge, HitVerdict};
@@ -26,11 +26,11 @@ pub struct Seen<'a> {
 
 impl Seen<'_> {
     pub fn kind(&self, pixel: usize) -> u32 {
-        self.frame.kind.as_ref().unwrap()[pixel]
+        self.frame.plane(KIND).unwrap()[pixel]
     }
 
     pub fn depth_mm(&self, pixel: usize) -> f64 {
-        f64::from(self.frame.depth.as_ref().unwrap()[pixel])
+        f64::from(self.frame.plane(DEPTH).unwrap()[pixel])
     }
 
     pub fn alpha(&self, pixel: usize) -> f64 {
@@ -38,11 +38,11 @@ impl Seen<'_> {
     }
 
     pub fn value(&self, pixel: usize) -> f64 {
-        f64::from(self.frame.value.as_ref().unwrap()[pixel])
+        f64::from(self.frame.plane(VALUE).unwrap()[pixel])
     }
 
     pub fn normal(&self, pixel: usize) -> glam::DVec3 {
-        glam::DVec3::from_array(self.frame.normal.as_ref().unwrap()[pixel].map(f64::from))
+        glam::DVec3::from_array(self.frame.plane(NORMAL).unwrap()[pixel].map(f64::from))
     }
 
     pub fn pixels(&self) -> usize {
@@ -295,11 +295,8 @@ struct Verdicts {
 
 fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Frame) -> Verdicts {
     let judge = HitJudge::new(volume, scene).unwrap();
-    let depth = frame.depth.as_ref().unwrap();
-    let (kind, kind_expected) = (
-        frame.kind.as_ref().unwrap(),
-        expected.kind.as_ref().unwrap(),
-    );
+    let depth = frame.plane(DEPTH).unwrap();
+    let (kind, kind_expected) = (frame.plane(KIND).unwrap(), expected.plane(KIND).unwrap());
     let mut counts = Verdicts::default();
     for pixel in 0..scene.size.pixels() {
         counts.hits += usize::from(kind_expected[pixel] != 0);

@@ -1,6 +1,6 @@
 //! Volumes: cases 22 to 26.
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{Frame, KIND, Wanted};
 use angioray::lab::hardcases::{HardCase, orientation_of};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
@@ -304,7 +304,8 @@ fn clip_planes() {
                 .iter()
                 .find(|(name, _)| name.starts_with("half"))
                 .unwrap();
-            let expected = on_reference(seen.volume, half).kind.unwrap();
+            let expected = on_reference(seen.volume, half);
+            let expected = expected.plane(KIND).unwrap();
             let same = (0..seen.pixels()).all(|pixel| expected[pixel] == seen.kind(pixel));
             lines.extend(is("the picture is that of one plane", same));
         }

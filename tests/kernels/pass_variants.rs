@@ -6,7 +6,7 @@
 use crate::common;
 
 use angioray::extent::ImageSize;
-use angioray::frame::Wanted;
+use angioray::frame::{Layer, Wanted};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
@@ -120,17 +120,11 @@ fn views<'a>(
 }
 
 fn layers_alone() -> Wanted {
-    Wanted {
-        counters: false,
-        ..Wanted::ALL
-    }
+    Wanted::ALL.without(Layer::COUNTERS)
 }
 
 fn counters_alone() -> Wanted {
-    Wanted {
-        counters: true,
-        ..Wanted::default()
-    }
+    Wanted::NONE.with(Layer::COUNTERS)
 }
 
 /// Builds and runs every pass of these pictures for one voxel type, with these filters and planes;
@@ -170,10 +164,9 @@ where
                         .all(|c| c.is_finite())
                 );
                 assert_eq!(rendering.frame.display.is_some(), wanted.display);
-                assert_eq!(rendering.frame.normal.is_some(), wanted.normal);
-                assert_eq!(rendering.frame.depth.is_some(), wanted.depth);
-                assert_eq!(rendering.frame.steps.is_some(), wanted.counters);
-                assert_eq!(rendering.frame.nodes.is_some(), wanted.counters);
+                for layer in Layer::ALL.into_iter().filter(|&layer| layer != Layer::Cast) {
+                    assert_eq!(rendering.frame.layers.has(layer), wanted.has(layer));
+                }
                 launches += rendering.passes.len();
             }
             let mut straight = common::scene(&volume, 8, picture.clone());
@@ -201,7 +194,7 @@ where
 
 #[test]
 fn u8_variants_build() {
-    let outputs = [Wanted::default(), Wanted::ALL];
+    let outputs = [Wanted::NONE, Wanted::ALL];
     let leaf = Leaf::default();
     assert!(launches(&pictures(), &gradients(), leaf, &FILTERS, &outputs, sum) > 0);
 }
@@ -239,7 +232,7 @@ fn u8_variants_of_every_quadrature_build() {
 fn u8_variants_of_every_quadrature_build_with_nearest_voxels() {
     let leaf = Leaf::default();
     let nearest = [Filter::Nearest];
-    let outputs = [Wanted::default()];
+    let outputs = [Wanted::NONE];
     assert!(launches(&emissions(), &[], leaf, &nearest, &outputs, sum) > 0);
 }
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use angioray::extent::ImageSize;
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{DEPTH, Frame, KIND, NODES, NORMAL, STEPS, VALUE, Wanted};
 use angioray::progress::{Progress, Silent};
 use angioray::reference::{render, render_pixels};
 use angioray::scene::{Camera, Lens, Light, Phong, Picture, Reflection, Rgb, Scene, Tone};
@@ -46,24 +46,22 @@ fn only_wanted_planes_are_filled_and_all_have_every_pixel() {
     let all = picture(&scene);
     let pixels = scene.size.pixels();
     assert_eq!(all.color.len(), pixels);
-    assert_eq!(all.depth.as_ref().unwrap().len(), pixels);
-    assert_eq!(all.normal.as_ref().unwrap().len(), pixels);
-    assert_eq!(all.value.as_ref().unwrap().len(), pixels);
-    assert_eq!(all.kind.as_ref().unwrap().len(), pixels);
+    assert_eq!(all.plane(DEPTH).unwrap().len(), pixels);
+    assert_eq!(all.plane(NORMAL).unwrap().len(), pixels);
+    assert_eq!(all.plane(VALUE).unwrap().len(), pixels);
+    assert_eq!(all.plane(KIND).unwrap().len(), pixels);
     assert_eq!(all.display.as_ref().unwrap().len(), pixels);
-    assert!(all.steps.as_ref().unwrap().iter().any(|&n| n > 8));
-    assert!(all.nodes.as_ref().unwrap().iter().all(|&n| n == 0));
-    let none = render(&ball(), &scene, Wanted::default(), &Silent).unwrap();
+    assert!(all.plane(STEPS).unwrap().iter().any(|&n| n > 8));
+    assert!(all.plane(NODES).unwrap().iter().all(|&n| n == 0));
+    let none = render(&ball(), &scene, Wanted::NONE, &Silent).unwrap();
     assert_eq!(none.color, all.color);
-    assert!(none.display.is_none() && none.depth.is_none() && none.normal.is_none());
-    assert!(none.value.is_none() && none.steps.is_none() && none.nodes.is_none());
-    assert!(none.kind.is_none());
+    assert!(none.display.is_none() && none.layers.iter().next().is_none());
 }
 
 #[test]
 fn the_ball_lies_where_the_camera_looks() {
     let frame = picture(&ball_scene(None));
-    let (depth, normal) = (frame.depth.unwrap(), frame.normal.unwrap());
+    let (depth, normal) = (frame.plane(DEPTH).unwrap(), frame.plane(NORMAL).unwrap());
     let (mut hits, mut upward) = (0, 0);
     for j in 0..40 {
         for i in 0..50 {
@@ -110,7 +108,7 @@ fn lit_pixel(phong: Phong, light: Light) -> ([f64; 3], DVec3) {
     scene.light = light;
     let frame = picture(&scene);
     let at = 13 * 50 + 28;
-    let n = DVec3::from_array(frame.normal.unwrap()[at].map(f64::from));
+    let n = DVec3::from_array(frame.plane(NORMAL).unwrap()[at].map(f64::from));
     let [r, g, b, a] = frame.color[at].map(f64::from);
     assert_eq!(a, 1.0);
     ([r, g, b], n)
@@ -206,7 +204,7 @@ impl Progress for Counter {
 #[test]
 fn progress_counts_every_row_once() {
     let counter = Counter::default();
-    render(&ball(), &ball_scene(None), Wanted::default(), &counter).unwrap();
+    render(&ball(), &ball_scene(None), Wanted::NONE, &counter).unwrap();
     assert_eq!(counter.total.load(Ordering::Relaxed), 40);
     assert_eq!(counter.done.load(Ordering::Relaxed), 40);
     assert_eq!(counter.ended.load(Ordering::Relaxed), 1);

@@ -4,8 +4,8 @@
 use crate::common;
 
 use angioray::extent::{Dims, ImageSize};
-use angioray::frame::Frame;
 use angioray::frame::error::{color_error, depth_error};
+use angioray::frame::{Frame, Layer};
 use angioray::lab::measure::{Peer, PeerFrame, Readiness};
 use angioray::scene::{
     Camera, Emission, Knot, Lens, Light, Phong, Picture, Projection, Refine, Rgb, Scene,
@@ -146,7 +146,7 @@ fn a_real_peer_draws_what_the_reference_draws() {
                 .map(|frame| color_error(&truth, &frame).unwrap().rmse)
                 .into_iter()
                 .fold(f64::INFINITY, f64::min);
-            let depth = frame.depth.is_some().then(|| {
+            let depth = frame.layers.has(Layer::Depth).then(|| {
                 let voxel_mm = volume.geometry().smallest_spacing_mm();
                 depth_error(&truth, &frame, voxel_mm).unwrap()
             });

@@ -6,6 +6,7 @@ use crate::fake_peer;
 use std::fs;
 use std::path::PathBuf;
 
+use angioray::frame::DEPTH;
 use angioray::frame::error::{color_error, depth_error};
 use angioray::lab::measure::Readiness;
 use angioray::scene::{
@@ -58,7 +59,7 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     assert_ne!(*eye, heard[2]["scene"]["camera"]["eye"]);
     assert_eq!(heard[6], json!({"forget": {}}));
     assert_eq!(picture.frame.color, [[1.0; 4], [0.5; 4]]);
-    assert_eq!(picture.frame.depth, Some(vec![1.0, f32::INFINITY]));
+    assert_eq!(picture.frame.plane(DEPTH).unwrap(), [1.0, f32::INFINITY]);
     // Shown over a background of one fifth of white.
     let display = picture.frame.display.as_ref().unwrap();
     let grey = srgb_from_linear(0.5 + 0.5 * 0.2) as f32;
@@ -68,7 +69,7 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     let mut truth = picture.frame.clone();
     assert_eq!(color_error(&truth, &picture.frame).unwrap().max, 0.0);
     truth.display.as_mut().unwrap()[1] = [grey - 0.25; 4];
-    truth.depth = Some(vec![f32::INFINITY, f32::INFINITY]);
+    truth.layers.insert(DEPTH, vec![f32::INFINITY; 2]);
     assert!((color_error(&truth, &picture.frame).unwrap().max - 0.25).abs() < 1e-6);
     assert_eq!(depth_error(&truth, &picture.frame, 1.0).unwrap().extra, 1);
 }
@@ -76,7 +77,7 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
 #[test]
 fn a_picture_without_depth_is_one() {
     let fake = Fake::answering(&[LOAD, READY, &renders(&two_pixels(), None)]);
-    assert_eq!(picture_of(&fake).unwrap().frame.depth, None);
+    assert_eq!(picture_of(&fake).unwrap().frame.plane(DEPTH), None);
 }
 
 #[test]

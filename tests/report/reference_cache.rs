@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{Frame, Layer, Wanted};
 use angioray::lab::measure::ReferenceCache;
 use angioray::progress::Silent;
 use angioray::reference;
@@ -67,13 +67,9 @@ fn another_volume_scene_or_choice_of_planes_is_computed_anew() {
     let mut turned = seen.clone();
     turned.camera = common::camera(&volume, common::OBLIQUE + glam::DVec3::X * 1e-9);
     assert!(picture(folder.path(), &volume, &turned, Wanted::ALL).1);
-    let wanted = Wanted {
-        display: true,
-        ..Wanted::default()
-    };
-    let (frame, computed) = picture(folder.path(), &volume, &seen, wanted);
+    let (frame, computed) = picture(folder.path(), &volume, &seen, Wanted::DISPLAY);
     assert!(computed);
-    assert!(frame.display.is_some() && frame.depth.is_none());
+    assert!(frame.display.is_some() && !frame.layers.has(Layer::Depth));
     assert_eq!(cached(folder.path()).len(), 4);
 }
 

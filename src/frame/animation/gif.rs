@@ -8,7 +8,7 @@ use image::{Delay, RgbImage};
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::image_error::image_failed;
+use crate::frame::encoder_error::encoder_error;
 use crate::frame::{Frame, quantize};
 
 use super::FrameRate;
@@ -40,7 +40,7 @@ pub(super) fn encode(
 ) -> Result<()> {
     check(rate)?;
     let (width, height) = (size.width(), size.height());
-    let failed = |error| image_failed(path, error);
+    let failed = |error| encoder_error(path, error);
     let mut encoder = GifEncoder::new_with_speed(out, SPEED);
     encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
     for (index, frame) in frames.enumerate() {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::frame::Frame;
+use crate::frame::{Frame, Layer};
 
 use super::{
     ColorError, DepthError, NormalError, ValueError, color_error, depth_error, flip, normal_error,
@@ -40,9 +40,10 @@ pub struct Figures {
 /// Different sizes; an entry that cannot be compared (those of [`color_error`] and its siblings).
 pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures> {
     let shown = reference.display.is_some() && frame.display.is_some();
-    let deep = reference.depth.is_some() && frame.depth.is_some();
-    let oriented = reference.normal.is_some() && frame.normal.is_some();
-    let valued = reference.value.is_some() && frame.value.is_some() && scale.range_width != 0.0;
+    let both_have = |layer| reference.layers.has(layer) && frame.layers.has(layer);
+    let deep = both_have(Layer::Depth);
+    let oriented = both_have(Layer::Normal);
+    let valued = both_have(Layer::Value) && scale.range_width != 0.0;
     Ok(Figures {
         color: shown.then(|| color_error(reference, frame)).transpose()?,
         ssim: shown.then(|| ssim(reference, frame)).transpose()?.flatten(),

@@ -7,7 +7,7 @@ use crate::error::Result;
 
 use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite, positive};
-use crate::frame::Frame;
+use crate::frame::{DEPTH, Frame, NORMAL};
 
 /// Hits are pixels of finite depth. `mean`, `p99` and `max` are of the absolute difference over
 /// pixels that both hit, in voxels of the smallest spacing. Serialized with both shares.
@@ -100,7 +100,7 @@ pub(super) fn depth_entries(
 ) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
     let unit = positive(smallest_spacing_mm, "voxel spacing")?;
-    let (left, right) = both(reference, frame, "depth", |f| f.depth.as_deref())?;
+    let (left, right) = both(reference, frame, "depth", |f| f.plane(DEPTH))?;
     let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
         for depth in [a, b] {
             if depth != f32::INFINITY {
@@ -131,7 +131,7 @@ pub fn normal_error(reference: &Frame, frame: &Frame) -> Result<NormalError> {
 /// The angles between the normals, in degrees.
 pub(super) fn normal_entries(reference: &Frame, frame: &Frame) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
-    let (left, right) = both(reference, frame, "normal", |f| f.normal.as_deref())?;
+    let (left, right) = both(reference, frame, "normal", |f| f.plane(NORMAL))?;
     let entry = |(pixel, (a, b)): (usize, (&[f32; 3], &[f32; 3]))| {
         let (a, b) = (a.map(f64::from), b.map(f64::from));
         for component in a.into_iter().chain(b) {

@@ -6,7 +6,7 @@ use crate::error::Result;
 
 use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite, positive};
-use crate::frame::Frame;
+use crate::frame::{Frame, VALUE};
 
 /// Absolute differences of the value plane over pixels that both cover (colour's alpha > 0), as a
 /// share of the volume's value range.
@@ -49,7 +49,7 @@ pub(super) fn value_entries(
 ) -> Result<Vec<Entry>> {
     let size = comparable(reference, frame)?;
     let unit = positive(range_width, "width of the value range")?;
-    let (left, right) = both(reference, frame, "value", |f| f.value.as_deref())?;
+    let (left, right) = both(reference, frame, "value", |f| f.plane(VALUE))?;
     let covers = |frame: &Frame, pixel: usize| frame.color[pixel][3] > 0.0;
     let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
         let difference = finite(f64::from(b) - f64::from(a), "value", size, pixel)?;

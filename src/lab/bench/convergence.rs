@@ -208,7 +208,7 @@ pub fn colors(device: &Device, volume: &Volume, scenes: &[Scene]) -> Result<Vec<
     let scenes = scenes.iter();
     scenes
         .map(|scene| {
-            let frame = renderer.render(scene, Wanted::default())?.frame;
+            let frame = renderer.render(scene, Wanted::NONE)?.frame;
             Ok(frame.color[0].map(f64::from))
         })
         .collect()

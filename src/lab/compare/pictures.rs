@@ -47,16 +47,7 @@ pub fn write(folder: &Folder, name: &str, frame: &Frame, metadata: &Metadata) ->
 
 /// Those whose planes are there.
 fn layers_of(frame: &Frame) -> Vec<Layer> {
-    let there = [
-        (Layer::Depth, frame.depth.is_some()),
-        (Layer::Normal, frame.normal.is_some()),
-        (Layer::Value, frame.value.is_some()),
-        (Layer::Steps, frame.steps.is_some()),
-        (Layer::Nodes, frame.nodes.is_some()),
-        (Layer::Kind, frame.kind.is_some()),
-    ];
-    let there = there.into_iter().filter(|(_, is)| *is);
-    there.map(|(layer, _)| layer).collect()
+    frame.layers.iter().map(|(layer, _)| layer).collect()
 }
 
 /// The error map of a picture of these `figures`: where a surface lies or a projection's value, where

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{Answer, HitJudge, HitVerdict};
 use crate::error::Result;
-use crate::frame::{Frame, Kind};
+use crate::frame::{DEPTH, Frame, KIND, Kind};
 use crate::reference::Tracer;
 use crate::scene::{Ray, Scene};
 use crate::volume::Volume;
@@ -78,12 +78,13 @@ impl<'a> Borderline<'a> {
     /// Gives those pixels of a frame whose depths differ from the reference's and are
     /// [`HitVerdict::Borderline`] the reference's depth; returns how many.
     pub fn excuse(&mut self, reference: &Frame, frame: &mut Frame) -> usize {
-        let (Some(references), Some(depths)) = (&reference.depth, &mut frame.depth) else {
-            return 0;
-        };
         let kinds = match self.closeness {
-            Closeness::Exact => frame.kind.as_deref(),
+            Closeness::Exact => frame.plane(KIND).map(<[u32]>::to_vec),
             Closeness::Jumps => None,
+        };
+        let (Some(references), Some(depths)) = (reference.plane(DEPTH), frame.plane_mut(DEPTH))
+        else {
+            return 0;
         };
         let differing: Vec<PixelAnswer> = (0..references.len())
             .filter(|&pixel| self.differ(references[pixel], depths[pixel]))
@@ -91,7 +92,7 @@ impl<'a> Borderline<'a> {
                 (
                     pixel,
                     depths[pixel].to_bits(),
-                    kinds.map(|kinds| kinds[pixel]),
+                    kinds.as_ref().map(|kinds| kinds[pixel]),
                 )
             })
             .collect();

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::frame::Frame;
+use crate::frame::{Frame, KIND, Key, NODES, STEPS};
 use crate::scene::Picture;
 
 /// Counters summed over a picture.
@@ -22,23 +22,23 @@ pub struct Counts {
 impl Counts {
     /// The counters of a frame that has counters and kinds. In emission a hit is a pixel with any opacity.
     pub fn of(frame: &Frame, picture: &Picture) -> Self {
-        let sum = |plane: &Option<Vec<u32>>| {
-            let counts = plane.iter().flatten();
+        let sum = |key: Key<u32>| {
+            let counts = frame.plane(key).into_iter().flatten();
             counts.map(|&n| u64::from(n)).sum()
         };
         let hits = match picture {
             Picture::Emission(_) => frame.color.iter().filter(|c| c[3] > 0.0).count(),
             _ => frame
-                .kind
-                .iter()
+                .plane(KIND)
+                .into_iter()
                 .flatten()
                 .filter(|&&kind| kind > 0)
                 .count(),
         };
         Self {
             rays: frame.size.pixels() as u64,
-            samples: sum(&frame.steps),
-            nodes: sum(&frame.nodes),
+            samples: sum(STEPS),
+            nodes: sum(NODES),
             hits: hits as u64,
             undecided: frame.undecided(),
         }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::frame::error::{Figures, Scale, figures};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::gpu::PassTime;
 use crate::render::{Renderer, Rendering};
 use crate::scene::{Picture, Scene};
@@ -18,15 +18,13 @@ use super::processor::processor_ms;
 /// is compared.
 pub fn evaluated_planes(picture: &Picture) -> Wanted {
     let surface = matches!(picture, Picture::Surface { .. });
-    Wanted {
-        display: true,
-        depth: surface,
-        normal: surface,
-        value: matches!(picture, Picture::Projection { .. }),
-        counters: true,
-        kind: true,
-        certificate: false,
-    }
+    let projection = matches!(picture, Picture::Projection { .. });
+    Wanted::DISPLAY
+        .with_if(surface, Layer::Depth)
+        .with_if(surface, Layer::Normal)
+        .with_if(projection, Layer::Value)
+        .with(Layer::COUNTERS)
+        .with([Layer::Kind])
 }
 
 /// The units of a volume's errors.

@@ -1,7 +1,7 @@
 //! How far one pixel is off, in the sense of a metric.
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Wanted, percentile};
+use crate::frame::{DEPTH, Frame, Layer, VALUE, Wanted, percentile};
 use crate::reference::{Sight, display};
 use crate::scene::{ErrorBound, ErrorMetric, Tone};
 use crate::volume::Volume;
@@ -39,8 +39,8 @@ impl Seen {
             .map_or([0.0; 4], |plane| plane[pixel]);
         Self {
             rgb: [r, g, b],
-            depth: (frame.depth.as_ref()).map_or(f32::INFINITY, |plane| plane[pixel]),
-            value: frame.value.as_ref().map_or(0.0, |plane| plane[pixel]),
+            depth: (frame.plane(DEPTH)).map_or(f32::INFINITY, |plane| plane[pixel]),
+            value: frame.plane(VALUE).map_or(0.0, |plane| plane[pixel]),
             covered: frame.color[pixel][3] > 0.0,
         }
     }
@@ -124,14 +124,12 @@ impl Deviation {
 
     /// The planes that the metric looks at.
     pub fn wanted(&self) -> Wanted {
-        Wanted {
-            display: matches!(
-                self.metric,
-                ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr
-            ),
-            depth: matches!(self.metric, ErrorMetric::Depth | ErrorMetric::Missed),
-            value: self.metric == ErrorMetric::Value,
-            ..Wanted::default()
+        match self.metric {
+            ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {
+                Wanted::DISPLAY
+            }
+            ErrorMetric::Depth | ErrorMetric::Missed => Wanted::NONE.with([Layer::Depth]),
+            ErrorMetric::Value => Wanted::NONE.with([Layer::Value]),
         }
     }
 

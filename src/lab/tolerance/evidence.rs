@@ -26,7 +26,7 @@ use super::deviation::{Deviation, Figure, Seen};
 use super::student::{CONFIDENCE, Mean};
 use super::tiles::Tiles;
 use crate::error::Result;
-use crate::frame::{Certificate, Frame, percentile};
+use crate::frame::{CERTIFICATE, Certificate, Frame, percentile};
 use crate::reference::Tracer;
 use crate::scene::Scene;
 use crate::volume::Volume;
@@ -78,7 +78,7 @@ impl<'a> Evidence<'a> {
             known: BTreeMap::new(),
             tiles: Tiles::new(scene.size, seed),
         };
-        let certificate = evidence.surest.certificate.iter().flatten();
+        let certificate = evidence.surest.plane(CERTIFICATE).into_iter().flatten();
         let undecided = certificate.zip(0..).filter_map(|(&certificate, pixel)| {
             (certificate == Certificate::Undecided as u32).then_some(pixel)
         });

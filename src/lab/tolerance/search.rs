@@ -9,7 +9,7 @@ use super::evidence::{Estimate, Evidence, Sample};
 use super::{Choice, Cost, Task, Tried, Verified};
 use crate::error::Result;
 use crate::extent::ImageSize;
-use crate::frame::Wanted;
+use crate::frame::{Layer, Wanted};
 use crate::lab::measure::interleaved;
 use crate::render::{Renderer, Rendering};
 use crate::scene::{Picture, Scene};
@@ -307,10 +307,8 @@ impl<'s, 'a> Search<'s, 'a> {
     where
         's: 'e,
     {
-        let wanted = Wanted {
-            certificate: matches!(scene.picture, Picture::Surface { .. }),
-            ..self.deviation.wanted()
-        };
+        let is_surface = matches!(scene.picture, Picture::Surface { .. });
+        let wanted = (self.deviation.wanted()).with_if(is_surface, Layer::Certificate);
         let frame = self.cast(scene, wanted)?.frame;
         Evidence::new(
             self.deviation,

@@ -1,47 +1,28 @@
 //! `kernels/pass/shade_surface.cl`
 
 use crate::error::Result;
-use crate::gpu::{Buffer, input, output, value};
-use crate::render::abi::{RayGrid, Shading};
+use crate::frame::Layer;
+use crate::gpu::{Args, Buffer};
+use crate::render::abi::Shading;
+use crate::render::resources::DeviceLayers;
 
-use super::{Run, switch};
+use super::run::Run;
 
-/// The `color` of each hit: shaded where a `normal` is given, else the base colour.
+/// The `color` of each hit: where `shaded`, by the normal, else the base colour. Reads the kind.
 pub fn shade_surface(
     run: &mut Run,
-    rays: &RayGrid,
     shading: &Shading,
-    kind: &Buffer<u32>,
-    normal: Option<&Buffer<[f32; 4]>>,
+    shaded: bool,
+    layers: &DeviceLayers,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let shaded = normal.is_some();
-    let variant = run.variant;
-    let defines = variant
-        .defines()
-        .with("LANES", variant.lanes)
-        .with("SHADED", switch(shaded));
-    let pass = run.built.pass("shade_surface", defines, || {
-        let mut signature = vec![
-            value::<RayGrid>("rays"),
-            value::<Shading>("shading"),
-            input::<u32>("kind"),
-        ];
-        if shaded {
-            signature.push(input::<[f32; 4]>("normal"));
-        }
-        signature.push(output::<[f32; 4]>("color"));
-        signature
-    })?;
-    let mut launch = pass
-        .launch(run.device)
-        .value(rays)
-        .value(shading)
-        .input(kind);
-    if let Some(normal) = normal {
-        launch = launch.input(normal);
-    }
-    launch
-        .output(color)
-        .run(run.size, run.work_group, run.timings)
+    let defines = run.defines().with("SHADED", u32::from(shaded));
+    let normal: &[Layer] = if shaded { &[Layer::Normal] } else { &[] };
+    let args = Args::new()
+        .with(&run.rays)
+        .value("shading", shading)
+        .with(layers.reading(&[Layer::Kind]))
+        .with(layers.reading(normal))
+        .write("color", color);
+    run.launch("shade_surface", defines, args)
 }

@@ -1,52 +1,28 @@
 //! `kernels/pass/surface_normal.cl`
 
 use crate::error::Result;
-use crate::gpu::{Buffer, input, output, value};
-use crate::render::abi::{RayGrid, VolumeGrid};
+use crate::frame::Layer;
+use crate::gpu::{Args, Buffer};
+use crate::render::resources::{DeviceGradient, DeviceLayers};
 
-use super::{DeviceClip, DeviceGradient, DeviceVolume, Run, voxels};
+use super::inputs::CastInputs;
+use super::run::Run;
 
-/// The unit world-space `normal` where each ray hit, toward lower values; zero elsewhere.
-#[allow(clippy::too_many_arguments)]
+/// The unit world-space normal where each ray hit, toward lower values; zero elsewhere. Reads the kind.
 pub fn surface_normal(
     run: &mut Run,
-    volume: &DeviceVolume,
+    inputs: CastInputs,
     gradient: DeviceGradient,
-    clip: &DeviceClip,
-    rays: &RayGrid,
     hit_mm: &Buffer<f32>,
-    kind: &Buffer<u32>,
-    normal: &mut Buffer<[f32; 4]>,
+    layers: &mut DeviceLayers,
 ) -> Result<()> {
-    let variant = run.variant;
-    let defines = gradient.define(variant.defines().with("LANES", variant.lanes));
-    let pass = run.built.pass("surface_normal", defines, || {
-        let mut signature: Vec<_> = gradient.parameters().collect();
-        if gradient.reads_voxels() {
-            signature.push(voxels(variant));
-        }
-        signature.extend([
-            DeviceClip::planes_parameter(),
-            DeviceClip::count_parameter(),
-            value::<VolumeGrid>("volume"),
-            value::<RayGrid>("rays"),
-            input::<f32>("hit_mm"),
-            input::<u32>("kind"),
-            output::<[f32; 4]>("normal"),
-        ]);
-        signature
-    })?;
-    let mut launch = gradient.give(pass.launch(run.device));
-    if gradient.reads_voxels() {
-        launch = run.voxels.give(launch);
-    }
-    launch
-        .input(&clip.planes)
-        .value(&clip.count)
-        .value(&volume.grid)
-        .value(rays)
-        .input(hit_mm)
-        .input(kind)
-        .output(normal)
-        .run(run.size, run.work_group, run.timings)
+    let defines = gradient.define(run.defines());
+    let voxels = gradient.reads_voxels().then_some(run.voxels);
+    let args = Args::new().with(gradient).with(voxels);
+    let args = inputs
+        .along_rays(args, run, DeviceGradient::NONE)
+        .read("hit_mm", hit_mm)
+        .with(layers.reading(&[Layer::Kind]))
+        .with(layers.writing(&[Layer::Normal]));
+    run.launch("surface_normal", defines, args)
 }

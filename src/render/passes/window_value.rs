@@ -1,36 +1,24 @@
 //! `kernels/pass/window_value.cl`
 
 use crate::error::Result;
-use crate::gpu::{Buffer, input, output, value};
-use crate::render::abi::RayGrid;
+use crate::frame::Layer;
+use crate::gpu::{Args, Buffer};
+use crate::render::resources::DeviceLayers;
 
-use super::Run;
+use super::run::Run;
 
-/// The grey of each projected value between the `window`'s low and high end (stored units).
+/// The grey of each projected value between the `window`'s black and white (stored units). Reads the kind and
+/// the value.
 pub fn window_value(
     run: &mut Run,
-    rays: &RayGrid,
     window: [f32; 2],
-    kind: &Buffer<u32>,
-    values: &Buffer<f32>,
+    layers: &DeviceLayers,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let variant = run.variant;
-    let defines = variant.defines().with("LANES", variant.lanes);
-    let pass = run.built.pass("window_value", defines, || {
-        vec![
-            value::<RayGrid>("rays"),
-            value::<[f32; 2]>("window"),
-            input::<u32>("kind"),
-            input::<f32>("value"),
-            output::<[f32; 4]>("color"),
-        ]
-    })?;
-    pass.launch(run.device)
-        .value(rays)
-        .value(&window)
-        .input(kind)
-        .input(values)
-        .output(color)
-        .run(run.size, run.work_group, run.timings)
+    let args = Args::new()
+        .with(&run.rays)
+        .value("window", &window)
+        .with(layers.reading(&[Layer::Kind, Layer::Value]))
+        .write("color", color);
+    run.launch("window_value", run.defines(), args)
 }

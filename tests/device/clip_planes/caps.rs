@@ -1,6 +1,6 @@
 //! Caps on clip planes: a solid volume's surface is where a plane opens it.
 
-use angioray::frame::Kind;
+use angioray::frame::{KIND, Kind, NORMAL};
 
 use super::*;
 
@@ -20,8 +20,8 @@ fn a_cap_lies_on_its_plane_and_has_its_normal() {
             [true, false].map(|caps| scene(&volume, surface(caps), (camera, size), &planes));
         for engine in engines() {
             let frames = engine.frames(&volume, &[capped.clone(), open.clone()]);
-            let kinds = frames[0].kind.as_ref().unwrap();
-            let normals = frames[0].normal.as_ref().unwrap();
+            let kinds = frames[0].plane(KIND).unwrap();
+            let normals = frames[0].plane(NORMAL).unwrap();
             let caps = kinds.iter().filter(|&&k| k == Kind::Cap as u32).count();
             assert_eq!(caps, kinds.len(), "{}", engine.name);
             let outward = -normal.normalize();
@@ -39,7 +39,7 @@ fn a_cap_lies_on_its_plane_and_has_its_normal() {
                 // The control: the face's normal, and the plane's own side.
                 assert!(seen.distance(-outward) > 1.0);
             }
-            let open = frames[1].kind.as_ref().unwrap();
+            let open = frames[1].plane(KIND).unwrap();
             assert!(open.iter().all(|&k| k == Kind::Nothing as u32));
         }
     }
@@ -68,7 +68,7 @@ fn from_inside_only_a_plane_ahead_is_capped() {
     for engine in engines() {
         let frames = engine.frames(&volume, &scenes);
         for ((planes, kind), frame) in cases.iter().zip(&frames) {
-            let kinds = frame.kind.as_ref().unwrap();
+            let kinds = frame.plane(KIND).unwrap();
             let all = kinds.iter().all(|&k| k == *kind as u32);
             assert!(all, "{}: {planes:?}: {kinds:?}", engine.name);
         }

@@ -9,7 +9,7 @@ mod points;
 mod special;
 
 use angioray::extent::ImageSize;
-use angioray::frame::Frame;
+use angioray::frame::{DEPTH, Frame};
 use angioray::gpu::Device;
 use angioray::scene::{
     Camera, ClipPlane, Emission, Knot, Lens, Picture, Projection, Refine, Rgb, SamplingMethod,
@@ -160,7 +160,12 @@ fn lengths_mm(frame: &Frame) -> impl Iterator<Item = f64> {
 }
 
 fn depths_mm(frame: &Frame) -> Vec<f64> {
-    frame.depth.iter().flatten().map(|&d| d.into()).collect()
+    frame
+        .plane(DEPTH)
+        .into_iter()
+        .flatten()
+        .map(|&d| d.into())
+        .collect()
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014).

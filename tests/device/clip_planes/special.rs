@@ -1,7 +1,7 @@
 //! Planes along the rays, through the eye, redundant, contradictory, many, of any length, and far
 //! from the origin.
 
-use angioray::frame::Kind;
+use angioray::frame::{CERTIFICATE, KIND, Kind};
 use angioray::lab::measure::HitJudge;
 
 use super::*;
@@ -15,7 +15,7 @@ fn cube() -> Volume {
 
 /// The rows of an 8 x 8 picture that see anything; all pixels of a row must agree.
 fn rows_seen(frame: &Frame) -> Vec<bool> {
-    let kinds = frame.kind.as_ref().unwrap();
+    let kinds = frame.plane(KIND).unwrap();
     let rows = kinds.chunks(frame.size.width() as usize);
     rows.map(|row| {
         assert!(row.iter().all(|kind| *kind == row[0]), "{row:?}");
@@ -103,7 +103,7 @@ fn planes_through_the_eye_keep_whole_rays_and_are_never_capped() {
                 );
             }
             assert!(all.iter().all(|&mm| mm > 0.5));
-            let kinds = frames[2].kind.as_ref().unwrap();
+            let kinds = frames[2].plane(KIND).unwrap();
             assert!(kinds.iter().all(|&kind| kind == 0), "{}", engine.name);
         }
     }
@@ -149,8 +149,8 @@ fn redundant_contradictory_and_many_planes() {
         assert_eq!(depths[1], depths[0], "{}", engine.name);
         assert!(apart(&depths[2], &depths[0]) < engine.depth_voxels);
         assert_eq!(depths[3], depths[0], "{}", engine.name);
-        let nothing = (&frames[4].kind, &frames[4].color);
-        assert!(nothing.0.iter().flatten().all(|&kind| kind == 0));
+        let nothing = (frames[4].plane(KIND), &frames[4].color);
+        assert!(nothing.0.into_iter().flatten().all(|&kind| kind == 0));
         assert!(nothing.1.iter().flatten().all(|&c| c == 0.0));
         // The control: the plane cuts.
         assert!(apart(&depths[5], &depths[0]) > 1.0);
@@ -273,8 +273,8 @@ impl Proven {
     fn add(&mut self, device: &Device, volume: &Volume, scene: &Scene) {
         let judge = HitJudge::new(volume, scene).unwrap();
         let frame = on_device(device, volume, std::slice::from_ref(scene)).remove(0);
-        let kinds = frame.kind.as_ref().unwrap();
-        let certificates = frame.certificate.as_ref().unwrap();
+        let kinds = frame.plane(KIND).unwrap();
+        let certificates = frame.plane(CERTIFICATE).unwrap();
         let width = scene.size.width() as usize;
         for (pixel, (&kind, &certificate)) in kinds.iter().zip(certificates).enumerate() {
             let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);

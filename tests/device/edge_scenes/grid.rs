@@ -1,6 +1,7 @@
 //! Rays along the voxel grid and through its corners, and eyes on it.
 
 use angioray::gpu::Device;
+use angioray::frame::{KIND, VALUE};
 use angioray::scene::{Camera, Filter, Lens};
 use glam::DVec3;
 
@@ -163,15 +164,15 @@ fn check_bright_voxel(device: &Device, at: DVec3) {
     ));
     let frames = on_device(device, &volume, &scenes);
     let (control, found) = frames.split_last().unwrap();
-    assert_eq!(control.value.as_ref().unwrap()[0], 0.0);
+    assert_eq!(control.plane(VALUE).unwrap()[0], 0.0);
     for (seen, (toward_eye, min)) in found.chunks(3).zip(directions) {
-        let value = seen[0].value.as_ref().unwrap()[0];
+        let value = seen[0].plane(VALUE).unwrap()[0];
         assert!(
             value > min,
             "{at} along {toward_eye}: the maximum is {value}"
         );
         assert_ne!(
-            seen[1].kind.as_ref().unwrap()[0],
+            seen[1].plane(KIND).unwrap()[0],
             0,
             "{at}: the surface is missed"
         );
@@ -208,7 +209,8 @@ fn nearest_voxels_along_the_grid() {
         scene.sampling.filter = Filter::Nearest;
         let frame = &on_device(&device, &volume, std::slice::from_ref(&scene))[0];
         let truth = on_reference(&volume, &scene);
-        assert_eq!(truth.value, frame.value, "{toward_eye}");
-        assert_ne!(truth.value, moved_by_a_pixel(frame).value);
+        let expected = truth.plane(VALUE).unwrap();
+        assert_eq!(frame.plane(VALUE).unwrap(), expected, "{toward_eye}");
+        assert_ne!(moved_by_a_pixel(frame).plane(VALUE).unwrap(), expected);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use angioray::extent::Dims;
-use angioray::frame::Frame;
+use angioray::frame::{DEPTH, Frame, KIND};
 use angioray::gpu::Device;
 use angioray::progress::Silent;
 use angioray::scene::Scene;
@@ -65,10 +65,10 @@ fn scenes(volume: &Volume, offset: f64) -> Vec<Scene> {
 fn difference(right: &Frame, found: &Frame) -> Option<String> {
     let kinds = common::differing_pixels(right, found);
     let depths = right
-        .depth
-        .iter()
+        .plane(DEPTH)
+        .into_iter()
         .flatten()
-        .zip(found.depth.iter().flatten());
+        .zip(found.plane(DEPTH).into_iter().flatten());
     let depth = depths
         .filter(|(a, b)| a.is_finite() && b.is_finite())
         .map(|(a, b)| f64::from((a - b).abs()))
@@ -85,8 +85,8 @@ fn difference(right: &Frame, found: &Frame) -> Option<String> {
 
 fn hits(frame: &Frame) -> usize {
     frame
-        .kind
-        .iter()
+        .plane(KIND)
+        .into_iter()
         .flatten()
         .filter(|&&kind| kind != 0)
         .count()

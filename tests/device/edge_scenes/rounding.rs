@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use angioray::extent::ImageSize;
-use angioray::frame::{Frame, Kind};
+use angioray::frame::{DEPTH, Frame, KIND, Kind, VALUE};
 use angioray::progress::Silent;
 use angioray::reference::Tracer;
 use angioray::scene::{Camera, Lens, Picture, Projection, SamplingMethod, Scene, Window};
@@ -53,7 +53,7 @@ fn scene(volume: &Volume, camera: Camera, picture: Picture, method: SamplingMeth
 }
 
 fn hits(frame: &Frame) -> usize {
-    let kinds = frame.kind.as_ref().unwrap();
+    let kinds = frame.plane(KIND).unwrap();
     kinds
         .iter()
         .filter(|kind| **kind != Kind::Nothing as u32)
@@ -114,8 +114,8 @@ fn rounding_changes_no_answer_of_the_reference() {
                     on_reference(volume, &scene)
                 };
                 let (found, right) = (of(&volume, iso), of(&other, like));
-                assert_eq!(found.kind, right.kind, "{iso:e} {caps}");
-                let depths = |frame: &Frame| frame.depth.clone().unwrap();
+                assert_eq!(found.plane(KIND), right.plane(KIND), "{iso:e} {caps}");
+                let depths = |frame: &Frame| frame.plane(DEPTH).unwrap().to_vec();
                 for (found, right) in depths(&found).into_iter().zip(depths(&right)) {
                     let near = found == right || (found - right).abs() < 1e-5;
                     assert!(near, "{iso:e}: {found} {right}");
@@ -152,8 +152,8 @@ fn projections_stay_within_the_voxels_range() {
                     frames.extend(on_device(device, &volume, std::slice::from_ref(&scene)));
                 }
                 for frame in frames {
-                    let kinds = frame.kind.unwrap().into_iter();
-                    for (value, kind) in frame.value.unwrap().into_iter().zip(kinds) {
+                    let kinds = frame.plane(KIND).unwrap();
+                    for (&value, &kind) in frame.plane(VALUE).unwrap().iter().zip(kinds) {
                         let value = f64::from(value);
                         let inside = kind == Kind::Nothing as u32
                             || (range.min..=range.max).contains(&value);

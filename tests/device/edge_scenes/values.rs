@@ -1,6 +1,7 @@
 //! Voxel values of any magnitude and sign, iso values and transfer functions of any kind.
 
 use angioray::extent::Dims;
+use angioray::frame::KIND;
 use angioray::scene::{Camera, Lens, Scene};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
@@ -97,7 +98,12 @@ fn iso_values_of_any_kind() {
                 scene.camera.lens()
             ));
         }
-        let hits = truth.kind.iter().flatten().filter(|k| **k != 0).count();
+        let hits = truth
+            .plane(KIND)
+            .into_iter()
+            .flatten()
+            .filter(|k| **k != 0)
+            .count();
         // By definition: nothing above the maximum, nothing changes sign at or below the minimum.
         if *iso > 200.0 || (*iso <= 20.0 && !caps) {
             assert_eq!(hits, 0, "iso {iso} caps {caps}");

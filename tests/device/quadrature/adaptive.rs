@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use angioray::extent::Dims;
-use angioray::frame::Frame;
+use angioray::frame::{Frame, STEPS};
 use angioray::gpu::Device;
 use angioray::progress::Silent;
 use angioray::scene::{
@@ -78,7 +78,12 @@ fn scene(volume: &Volume, emission: Emission) -> Scene {
 }
 
 fn samples(frame: &Frame) -> u64 {
-    frame.steps.iter().flatten().map(|&n| u64::from(n)).sum()
+    frame
+        .plane(STEPS)
+        .into_iter()
+        .flatten()
+        .map(|&n| u64::from(n))
+        .sum()
 }
 
 fn judge(name: &str, volume: &Volume, phong: Option<Phong>) {

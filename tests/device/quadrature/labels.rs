@@ -1,7 +1,7 @@
 //! Labels: with the nearest filter the field has the voxels' own values and none between them, whatever
 //! looks at it.
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{Frame, KIND, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
@@ -89,7 +89,7 @@ fn no_rule_shows_a_label_between_two_with_the_nearest_filter() {
         let mut opacity = |filter, value, rule| {
             let scene = scene(&volume, filter, emission(value, rule));
             let wanted = match filter {
-                Filter::Nearest => Wanted::default(),
+                Filter::Nearest => Wanted::NONE,
                 Filter::Linear => Wanted::ALL,
             };
             most_opaque(&renderer.render(&scene, wanted).unwrap().frame)
@@ -121,10 +121,10 @@ fn values(device: &Device, volume: &Volume, filter: Filter, picture: Picture) ->
     let scene = scene(volume, filter, picture);
     let frame = &common::on_device(device, volume, &[scene])[0];
     let seen = frame
-        .kind
-        .iter()
+        .plane(KIND)
+        .into_iter()
         .flatten()
-        .zip(frame.value.iter().flatten());
+        .zip(frame.plane(VALUE).into_iter().flatten());
     seen.filter(|(kind, _)| **kind > 0)
         .map(|(_, &v)| v)
         .collect()

@@ -1,7 +1,7 @@
 //! A medium's layers, ∫ x κT dt / ∫ κT dt of the distance, the value and the normal: closed forms on the
 //! device under every rule and on the reference; and that wanting them changes nothing else.
 
-use angioray::frame::{Frame, Wanted};
+use angioray::frame::{DEPTH, Frame, KIND, Layer, NORMAL, STEPS, VALUE, Wanted};
 use angioray::octree::Octree;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
@@ -25,21 +25,21 @@ fn transfer(points: &[(f64, f64)], unit_mm: f64) -> TransferFunction {
 
 /// Depth, value and normal of the first pixel.
 #[derive(Debug, Clone, Copy)]
-struct Layers {
+struct FirstPixel {
     depth: f64,
     value: f64,
     normal: DVec3,
     kind: u32,
 }
 
-impl Layers {
+impl FirstPixel {
     fn of(frame: &Frame) -> Self {
-        let [x, y, z] = frame.normal.as_ref().unwrap()[0].map(f64::from);
+        let [x, y, z] = frame.plane(NORMAL).unwrap()[0].map(f64::from);
         Self {
-            depth: frame.depth.as_ref().unwrap()[0].into(),
-            value: frame.value.as_ref().unwrap()[0].into(),
+            depth: frame.plane(DEPTH).unwrap()[0].into(),
+            value: frame.plane(VALUE).unwrap()[0].into(),
             normal: DVec3::new(x, y, z),
-            kind: frame.kind.as_ref().unwrap()[0],
+            kind: frame.plane(KIND).unwrap()[0],
         }
     }
 }
@@ -50,7 +50,7 @@ fn along_x(
     volume: &Volume,
     transfer: &TransferFunction,
     step_voxels: f64,
-) -> Vec<(String, Layers)> {
+) -> Vec<(String, FirstPixel)> {
     let Some(device) = common::device() else {
         return Vec::new();
     };
@@ -67,11 +67,11 @@ fn along_x(
     let scenes = QuadratureMethod::ALL.map(scene);
     let frames = on_device(&device, volume, &scenes);
     let names = QuadratureMethod::ALL.map(|method| method.to_string());
-    let mut all: Vec<(String, Layers)> = names
+    let mut all: Vec<(String, FirstPixel)> = names
         .into_iter()
-        .zip(frames.iter().map(Layers::of))
+        .zip(frames.iter().map(FirstPixel::of))
         .collect();
-    let truth = Layers::of(&on_reference(volume, &scenes[0]));
+    let truth = FirstPixel::of(&on_reference(volume, &scenes[0]));
     all.push(("reference".to_owned(), truth));
     all
 }
@@ -189,10 +189,10 @@ fn a_plane_has_its_normal_from_everywhere() {
     let normal = -slope.normalize();
     for frame in &frames {
         let seen = frame
-            .kind
-            .iter()
+            .plane(KIND)
+            .into_iter()
             .flatten()
-            .zip(frame.normal.iter().flatten());
+            .zip(frame.plane(NORMAL).into_iter().flatten());
         let seen: Vec<DVec3> = seen
             .filter(|(kind, _)| **kind == 1)
             .map(|(_, n)| DVec3::from_array(n.map(f64::from)))
@@ -239,31 +239,11 @@ fn emissions(volume: &Volume) -> Vec<Scene> {
     scenes
 }
 
-const NONE: Wanted = Wanted {
-    display: false,
-    depth: false,
-    normal: false,
-    value: false,
-    counters: false,
-    kind: false,
-    certificate: false,
-};
-
 /// Each layer, or those that are made together, alone.
 const ALONE: [Wanted; 3] = [
-    Wanted {
-        depth: true,
-        ..NONE
-    },
-    Wanted {
-        normal: true,
-        ..NONE
-    },
-    Wanted {
-        value: true,
-        kind: true,
-        ..NONE
-    },
+    Wanted::NONE.with([Layer::Depth]),
+    Wanted::NONE.with([Layer::Normal]),
+    Wanted::NONE.with([Layer::Value, Layer::Kind]),
 ];
 
 #[test]
@@ -279,37 +259,27 @@ fn wanting_layers_changes_no_bit_of_the_colours_and_no_sample() {
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     for (n, scene) in emissions(&volume).iter().enumerate() {
         let mut render = |wanted| renderer.render(scene, wanted).unwrap().frame;
-        let (plain, all) = (render(NONE), render(Wanted::ALL));
+        let (plain, all) = (render(Wanted::NONE), render(Wanted::ALL));
         let what = format!("{:?} {:?}", scene.picture, scene.sampling.filter);
-        assert!(plain.depth.is_none() && plain.kind.is_none());
+        assert!(plain.layers.iter().next().is_none());
         assert!(plain.color == all.color, "{what}");
         if QuadratureMethod::ALL.get(n) != Some(&QuadratureMethod::Simpson) {
             continue;
         }
-        let counted = render(Wanted {
-            counters: true,
-            ..NONE
-        });
-        assert!(counted.steps == all.steps, "{what}");
+        let counted = render(Wanted::NONE.with(Layer::COUNTERS));
+        assert!(counted.plane(STEPS) == all.plane(STEPS), "{what}");
         for wanted in ALONE {
             let alone = render(wanted);
             assert!(alone.color == all.color, "{what}");
-            assert!(alone.depth.is_none() || alone.depth == all.depth, "{what}");
-            assert!(
-                alone.normal.is_none() || alone.normal == all.normal,
-                "{what}"
-            );
-            assert!(alone.value.is_none() || alone.value == all.value, "{what}");
-            assert!(alone.kind.is_none() || alone.kind == all.kind, "{what}");
+            for (layer, plane) in alone.layers.iter() {
+                assert!(Some(plane) == all.layers.get(layer), "{what} {layer:?}");
+            }
+            assert!(alone.layers.iter().next().is_some());
         }
     }
     let scene = &emissions(&volume)[0];
     let truth = on_reference(&volume, scene);
-    let bare = angioray::reference::render(
-        &volume,
-        scene,
-        Wanted::default(),
-        &angioray::progress::Silent,
-    );
+    let bare =
+        angioray::reference::render(&volume, scene, Wanted::NONE, &angioray::progress::Silent);
     assert!(bare.unwrap().color == truth.color);
 }

@@ -2,6 +2,7 @@
 //! bound there at a cost that does not grow with the ratio.
 
 use angioray::extent::ImageSize;
+use angioray::frame::STEPS;
 use angioray::scene::Picture;
 use angioray::scene::{Camera, Lens, Quadrature, QuadratureMethod, Scene, SceneOptions, Subject};
 use angioray::volume::{Geometry, Volume};
@@ -75,7 +76,12 @@ fn measured(volume: &Volume, scene: &Scene) -> Option<(f64, f64)> {
         .flatten()
         .zip(frame.color.iter().flatten());
     let error = pairs.fold(0.0, |most, (a, b)| f64::max(most, f64::from((a - b).abs())));
-    let samples: u64 = frame.steps.iter().flatten().map(|&n| u64::from(n)).sum();
+    let samples: u64 = frame
+        .plane(STEPS)
+        .into_iter()
+        .flatten()
+        .map(|&n| u64::from(n))
+        .sum();
     Some((samples as f64 / frame.size.pixels() as f64, error))
 }
 

@@ -4,28 +4,45 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use angioray::frame::{Encoding, Format, Frame, Layer, channels, write};
+use angioray::frame::{
+    CERTIFICATE, DEPTH, Encoding, Format, Frame, KIND, Layer, NODES, NORMAL, STEPS, VALUE,
+    channels, write,
+};
 
 use super::{METADATA, all_layers, picture};
 
 /// The channel of [`picture`] with that name, straight from its planes.
 fn plane(frame: &Frame, name: &str) -> Vec<f32> {
-    let count = |plane: &Option<Vec<u32>>| plane.iter().flatten().map(|n| *n as f32).collect();
-    let normal = |i: usize| frame.normal.iter().flatten().map(|n| n[i]).collect();
+    let count = |key| {
+        frame
+            .plane(key)
+            .unwrap()
+            .iter()
+            .map(|n| *n as f32)
+            .collect()
+    };
+    let normal = |i: usize| {
+        frame
+            .plane(NORMAL)
+            .into_iter()
+            .flatten()
+            .map(|n| n[i])
+            .collect()
+    };
     match name {
         "R" => frame.color.iter().map(|c| c[0]).collect(),
         "G" => frame.color.iter().map(|c| c[1]).collect(),
         "B" => frame.color.iter().map(|c| c[2]).collect(),
         "A" => frame.color.iter().map(|c| c[3]).collect(),
-        "depth.Z" => frame.depth.clone().unwrap(),
+        "depth.Z" => frame.plane(DEPTH).unwrap().to_vec(),
         "normal.X" => normal(0),
         "normal.Y" => normal(1),
         "normal.Z" => normal(2),
-        "value.V" => frame.value.clone().unwrap(),
-        "steps.N" => count(&frame.steps),
-        "nodes.N" => count(&frame.nodes),
-        "kind.V" => count(&frame.kind),
-        "certificate.V" => count(&frame.certificate),
+        "value.V" => frame.plane(VALUE).unwrap().to_vec(),
+        "steps.N" => count(STEPS),
+        "nodes.N" => count(NODES),
+        "kind.V" => count(KIND),
+        "certificate.V" => count(CERTIFICATE),
         "cast.V" => vec![1.0; frame.size.pixels()],
         other => panic!("no channel {other}"),
     }

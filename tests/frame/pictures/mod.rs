@@ -11,7 +11,9 @@ use std::path::Path;
 
 use angioray::error::ErrorKind;
 use angioray::extent::ImageSize;
-use angioray::frame::{Certificate, Encoding, Format, Frame, Kind, Layer, Wanted, write};
+use angioray::frame::{
+    DEPTH, Encoding, Format, Frame, KIND, Layer, NODES, NORMAL, STEPS, VALUE, Wanted, write,
+};
 
 const METADATA: [(&str, &str); 2] = [
     ("scene", "mode = \"iso\"\n# Gefäß, Ω ≥ 300 HU\n"),
@@ -20,21 +22,11 @@ const METADATA: [(&str, &str); 2] = [
 
 /// A picture in which no ray met anything, with the planes that `wanted` names.
 fn nothing_hit(size: ImageSize, wanted: Wanted) -> Frame {
-    fn plane<T: Clone>(wanted: bool, entry: T, size: ImageSize) -> Option<Vec<T>> {
-        wanted.then(|| vec![entry; size.pixels()])
+    let mut frame = Frame::blank(size, wanted).unwrap();
+    for plane in frame.display.iter_mut() {
+        plane.fill([0.0, 0.0, 0.0, 1.0]);
     }
-    Frame {
-        size,
-        color: vec![[0.0; 4]; size.pixels()],
-        display: plane(wanted.display, [0.0, 0.0, 0.0, 1.0], size),
-        depth: plane(wanted.depth, f32::INFINITY, size),
-        normal: plane(wanted.normal, [0.0; 3], size),
-        value: plane(wanted.value, 0.0, size),
-        steps: plane(wanted.counters, 0, size),
-        nodes: plane(wanted.counters, 0, size),
-        kind: plane(wanted.kind, Kind::Nothing as u32, size),
-        certificate: plane(wanted.certificate, Certificate::Undecided as u32, size),
-    }
+    frame
 }
 
 /// 5 x 3 with a different number in every place: two hits, the rest nothing.
@@ -43,12 +35,12 @@ fn picture() -> Frame {
     let mut frame = nothing_hit(size, Wanted::ALL);
     for (pixel, hit) in [(1, 1.0_f32), (13, 2.0)] {
         frame.color[pixel] = [0.1 * hit, 0.2 * hit, 0.3 * hit, 0.5 * hit];
-        frame.depth.as_mut().unwrap()[pixel] = 123.456 * hit;
-        frame.normal.as_mut().unwrap()[pixel] = [0.6, -0.8, 0.0];
-        frame.value.as_mut().unwrap()[pixel] = -1024.5 * hit;
-        frame.steps.as_mut().unwrap()[pixel] = 1000 + pixel as u32;
-        frame.nodes.as_mut().unwrap()[pixel] = 16_777_215;
-        frame.kind.as_mut().unwrap()[pixel] = 1 + hit as u32;
+        frame.plane_mut(DEPTH).unwrap()[pixel] = 123.456 * hit;
+        frame.plane_mut(NORMAL).unwrap()[pixel] = [0.6, -0.8, 0.0];
+        frame.plane_mut(VALUE).unwrap()[pixel] = -1024.5 * hit;
+        frame.plane_mut(STEPS).unwrap()[pixel] = 1000 + pixel as u32;
+        frame.plane_mut(NODES).unwrap()[pixel] = 16_777_215;
+        frame.plane_mut(KIND).unwrap()[pixel] = 1 + hit as u32;
     }
     for (pixel, display) in frame.display.as_mut().unwrap().iter_mut().enumerate() {
         let level = |add: usize| (((pixel * 17 + add) % 256) as f64 / 255.0) as f32;
@@ -121,28 +113,10 @@ fn formats_go_by_the_extension() {
 #[test]
 fn an_encoding_names_its_planes() {
     let png = Wanted::for_encoding(&Encoding::new(Format::Png), false);
-    assert_eq!(
-        png,
-        Wanted {
-            display: true,
-            ..Wanted::default()
-        }
-    );
+    assert_eq!(png, Wanted::DISPLAY);
     let all = Wanted::for_encoding(&all_layers(Format::Exr), false);
-    assert_eq!(
-        all,
-        Wanted {
-            display: false,
-            ..Wanted::ALL
-        }
-    );
+    assert_eq!(all, Wanted::NONE.with(Layer::ALL));
     let counted = Wanted::for_encoding(&Encoding::new(Format::Npy), true);
-    assert_eq!(
-        counted,
-        Wanted {
-            counters: true,
-            kind: true,
-            ..Wanted::default()
-        }
-    );
+    let expected = Wanted::NONE.with(Layer::COUNTERS).with([Layer::Kind]);
+    assert_eq!(counted, expected);
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use angioray::extent::ImageSize;
-use angioray::frame::{BitDepth, Encoding, Format, Layer, Wanted, write};
+use angioray::frame::{BitDepth, DEPTH, Encoding, Format, Layer, Wanted, write};
 
 use super::{METADATA, all_layers, nothing_hit, picture};
 
@@ -61,7 +61,7 @@ fn what_a_format_cannot_do_is_wrong_usage_and_writes_nothing() {
 fn a_frame_without_the_plane_is_a_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let size = ImageSize::new(4, 4).unwrap();
-    let bare = nothing_hit(size, Wanted::default());
+    let bare = nothing_hit(size, Wanted::NONE);
     for format in [Format::Png, Format::Jpeg, Format::WebP] {
         let path = folder.path().join("a");
         let error = write(&path, &bare, &Encoding::new(format), &[]).unwrap_err();
@@ -92,7 +92,9 @@ fn a_frame_without_the_plane_is_a_sentence() {
     assert_eq!(names_in(folder.path()), [""; 0]);
 
     let mut short = picture();
-    short.depth.as_mut().unwrap().pop();
+    let mut depths = short.layers.take(DEPTH).unwrap();
+    depths.pop();
+    short.layers.insert(DEPTH, depths);
     let path = folder.path().join("a.exr");
     let error = write(&path, &short, &all_layers(Format::Exr), &[]).unwrap_err();
     assert!(

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use angioray::extent::ImageSize;
-use angioray::gpu::{Buffer, Pass, Timings, output};
+use angioray::gpu::{Args, Buffer, Pass, Timings};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant};
 use angioray::scene::{Filter, Storage};
@@ -149,22 +149,16 @@ fn all_is_built_before_the_first_launch() {
             .defines()
             .with("NEVER_BEFORE", now.unwrap().as_nanos());
         let defines = defines.with("PLACE", place);
-        std::sync::Arc::new(Pass::new(
-            "test",
-            "abi",
-            defines,
-            vec![output::<u32>("layout")],
-        ))
+        Pass::new("test", "abi", defines, [1, 1])
     };
     let passes = [unique(0), unique(1)];
     let mut layout = Buffer::<u32>::new(&device, "layout", 4096).unwrap();
     let mut launched = |passes: &[std::sync::Arc<Pass>]| {
         let mut timings = Timings::default();
         for pass in passes {
-            let launch = pass.launch(&device).output(&mut layout);
-            launch
-                .run(ImageSize::new(1, 1).unwrap(), Some([1, 1]), &mut timings)
-                .unwrap();
+            let args = Args::new().write("layout", &mut layout);
+            let size = ImageSize::new(1, 1).unwrap();
+            timings.add(pass.launch(&device, args, size, Some([1, 1])).unwrap());
         }
         timings
     };

@@ -1,6 +1,6 @@
 //! The interval of a ray inside the volume and on the kept side of planes.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::{ClipPlane, Filter};
 
 use super::interval::{Case, Inside, random_cases, truth};
@@ -13,17 +13,7 @@ type Plane = [f32; 4];
 
 fn on_device(cases: &[(Case, Vec<Plane>)]) -> Option<Vec<Inside>> {
     let device = common::device()?;
-    let signature = vec![
-        value::<u32>("count"),
-        input::<[u32; 4]>("sizes"),
-        input::<[f32; 4]>("planes"),
-        input::<u32>("counts"),
-        input::<[f32; 4]>("origins"),
-        input::<[f32; 4]>("dirs"),
-        output::<[f32; 2]>("inside"),
-        output::<[u32; 4]>("entry"),
-    ];
-    let pass = build(&device, "clip", variant(U8, Filter::Linear, 8), signature);
+    let pass = build("clip", variant(U8, Filter::Linear, 8));
     let mut first = 0;
     let mut sizes = Vec::new();
     for (case, planes) in cases {
@@ -44,15 +34,16 @@ fn on_device(cases: &[(Case, Vec<Plane>)]) -> Option<Vec<Inside>> {
     let mut entry = room::<[u32; 4]>(&device, cases.len());
     run(
         &device,
-        pass.launch(&device)
-            .value(&(cases.len() as u32))
-            .input(&upload(&device, &sizes))
-            .input(&upload(&device, &planes))
-            .input(&upload(&device, &counts))
-            .input(&upload(&device, &vectors(|case| case.origin)))
-            .input(&upload(&device, &vectors(|case| case.dir)))
-            .output(&mut inside)
-            .output(&mut entry),
+        &pass,
+        Args::new()
+            .value("count", &(cases.len() as u32))
+            .read("sizes", &upload(&device, &sizes))
+            .read("planes", &upload(&device, &planes))
+            .read("counts", &upload(&device, &counts))
+            .read("origins", &upload(&device, &vectors(|case| case.origin)))
+            .read("dirs", &upload(&device, &vectors(|case| case.dir)))
+            .write("inside", &mut inside)
+            .write("entry", &mut entry),
         cases.len(),
     );
     let inside = inside.download(&device).unwrap();

@@ -1,6 +1,6 @@
 //! The sRGB curve, both ways.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::Filter;
 
 use super::{U8, build, common, room, run, upload, variant};
@@ -8,22 +8,17 @@ use super::{U8, build, common, room, run, upload, variant};
 /// Each value linearised and encoded on the device.
 fn on_device(values: &[f32]) -> Option<(Vec<f32>, Vec<f32>)> {
     let device = common::device()?;
-    let signature = vec![
-        value::<u32>("count"),
-        input::<f32>("values"),
-        output::<f32>("linear"),
-        output::<f32>("srgb"),
-    ];
-    let pass = build(&device, "color", variant(U8, Filter::Linear, 8), signature);
+    let pass = build("color", variant(U8, Filter::Linear, 8));
     let mut linear = room(&device, values.len());
     let mut srgb = room(&device, values.len());
     run(
         &device,
-        pass.launch(&device)
-            .value(&(values.len() as u32))
-            .input(&upload(&device, values))
-            .output(&mut linear)
-            .output(&mut srgb),
+        &pass,
+        Args::new()
+            .value("count", &(values.len() as u32))
+            .read("values", &upload(&device, values))
+            .write("linear", &mut linear)
+            .write("srgb", &mut srgb),
         values.len(),
     );
     Some((

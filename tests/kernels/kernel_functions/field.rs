@@ -1,6 +1,6 @@
 //! The field between voxel centres and its slope.
 
-use angioray::gpu::{Element, input, output, value};
+use angioray::gpu::{Args, Element};
 use angioray::render::Variant;
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
@@ -65,29 +65,21 @@ impl<T: Element + Into<f64>> Grid<T> {
 
     fn on_device(&self, variant: Variant, points: &[[f32; 4]], dirs: &[[f32; 4]]) -> Option<Seen> {
         let device = common::device()?;
-        let signature = vec![
-            value::<u32>("count"),
-            value::<[u32; 4]>("size"),
-            input::<T>("voxels"),
-            input::<[f32; 4]>("points"),
-            input::<[f32; 4]>("dirs"),
-            output::<f32>("values"),
-            output::<[f32; 2]>("with_slope"),
-        ];
-        let pass = build(&device, "field", variant, signature);
+        let pass = build("field", variant);
         let [nx, ny, nz] = self.size;
         let mut values = room(&device, points.len());
         let mut with_slope = room(&device, points.len());
         run(
             &device,
-            pass.launch(&device)
-                .value(&(points.len() as u32))
-                .value(&[nx, ny, nz, 0])
-                .input(&upload(&device, &self.voxels))
-                .input(&upload(&device, points))
-                .input(&upload(&device, dirs))
-                .output(&mut values)
-                .output(&mut with_slope),
+            &pass,
+            Args::new()
+                .value("count", &(points.len() as u32))
+                .value("size", &[nx, ny, nz, 0])
+                .read("voxels", &upload(&device, &self.voxels))
+                .read("points", &upload(&device, points))
+                .read("dirs", &upload(&device, dirs))
+                .write("values", &mut values)
+                .write("with_slope", &mut with_slope),
             points.len(),
         );
         Some(Seen {

@@ -1,6 +1,6 @@
 //! The field's gradient by each method, and the normal made of it.
 
-use angioray::gpu::{Pass, input, output, value};
+use angioray::gpu::{Args, Pass};
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
 
@@ -29,49 +29,34 @@ struct Seen {
 
 fn on_device(size: [u32; 3], source: &Source, points: &[[f32; 4]]) -> Option<Seen> {
     let device = common::device()?;
-    let (method, read) = match source {
-        Source::Voxels(method, _) => (*method, vec![input::<f32>("voxels")]),
-        Source::Directions(..) => {
-            let grid = value::<[u32; 4]>("direction_grid");
-            ("PRECOMPUTED", vec![input::<i16>("directions"), grid])
-        }
+    let method = match source {
+        Source::Voxels(method, _) => method,
+        Source::Directions(..) => "PRECOMPUTED",
     };
-    let rows = ["row_x", "row_y", "row_z"].map(value::<[f32; 4]>);
-    let mut signature = vec![value::<u32>("count"), value::<[u32; 4]>("size")];
-    signature.extend(rows.into_iter().chain(read));
-    signature.extend([
-        input::<[f32; 4]>("points"),
-        value::<[f32; 4]>("fallback"),
-        output::<[f32; 4]>("gradients"),
-        output::<[f32; 4]>("normals"),
-    ]);
     let defines = variant(VoxelType::F32, Filter::Linear, 8).defines();
     let defines = defines.with("GRADIENT", format!("GRADIENT_{method}"));
-    let pass = Pass::new("test", "gradient", defines, signature);
-    let pass = pass.built(&device).unwrap();
+    let pass = Pass::new("test", "gradient", defines, [1, 1]);
     let mut gradients = room::<[f32; 4]>(&device, points.len());
     let mut normals = room::<[f32; 4]>(&device, points.len());
-    let (voxels, directions) = match source {
-        Source::Voxels(_, voxels) => (upload(&device, voxels), upload(&device, &[0i16])),
-        Source::Directions(d, _) => (upload(&device, &[0f32]), upload(&device, d)),
-    };
-    let points_there = upload(&device, points);
     let [nx, ny, nz] = size;
-    let launch = pass
-        .launch(&device)
-        .value(&(points.len() as u32))
-        .value(&[nx, ny, nz, 0]);
-    let launch = ROWS.iter().fold(launch, |launch, row| launch.value(row));
-    let launch = match source {
-        Source::Voxels(..) => launch.input(&voxels),
-        Source::Directions(_, grid) => launch.input(&directions).value(grid),
+    let args = Args::new()
+        .value("count", &(points.len() as u32))
+        .value("size", &[nx, ny, nz, 0])
+        .value("row_x", &ROWS[0])
+        .value("row_y", &ROWS[1])
+        .value("row_z", &ROWS[2]);
+    let args = match source {
+        Source::Voxels(_, voxels) => args.read("voxels", &upload(&device, voxels)),
+        Source::Directions(directions, grid) => args
+            .read("directions", &upload(&device, directions))
+            .value("direction_grid", grid),
     };
-    let launch = launch
-        .input(&points_there)
-        .value(&FALLBACK)
-        .output(&mut gradients)
-        .output(&mut normals);
-    run(&device, launch, points.len());
+    let args = args
+        .read("points", &upload(&device, points))
+        .value("fallback", &FALLBACK)
+        .write("gradients", &mut gradients)
+        .write("normals", &mut normals);
+    run(&device, &pass, args, points.len());
     let read = |buffer: Vec<[f32; 4]>| buffer.into_iter().map(xyz).collect();
     Some(Seen {
         gradients: read(gradients.download(&device).unwrap()),

@@ -1,6 +1,6 @@
 //! The interval of a ray inside the volume.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::Filter;
 
 use super::{Random, U8, build, common, room, run, upload, variant};
@@ -22,20 +22,7 @@ pub struct Inside {
 
 fn on_device(cases: &[Case]) -> Option<Vec<Inside>> {
     let device = common::device()?;
-    let signature = vec![
-        value::<u32>("count"),
-        input::<[u32; 4]>("sizes"),
-        input::<[f32; 4]>("origins"),
-        input::<[f32; 4]>("dirs"),
-        output::<[f32; 2]>("inside"),
-        output::<[u32; 4]>("entry"),
-    ];
-    let pass = build(
-        &device,
-        "interval",
-        variant(U8, Filter::Linear, 8),
-        signature,
-    );
+    let pass = build("interval", variant(U8, Filter::Linear, 8));
     let vectors = |of: fn(&Case) -> [f32; 3]| -> Vec<[f32; 4]> {
         let vector = |case| {
             let [x, y, z] = of(case);
@@ -51,13 +38,14 @@ fn on_device(cases: &[Case]) -> Option<Vec<Inside>> {
     let mut entry = room::<[u32; 4]>(&device, cases.len());
     run(
         &device,
-        pass.launch(&device)
-            .value(&(cases.len() as u32))
-            .input(&upload(&device, &sizes))
-            .input(&upload(&device, &vectors(|case| case.origin)))
-            .input(&upload(&device, &vectors(|case| case.dir)))
-            .output(&mut inside)
-            .output(&mut entry),
+        &pass,
+        Args::new()
+            .value("count", &(cases.len() as u32))
+            .read("sizes", &upload(&device, &sizes))
+            .read("origins", &upload(&device, &vectors(|case| case.origin)))
+            .read("dirs", &upload(&device, &vectors(|case| case.dir)))
+            .write("inside", &mut inside)
+            .write("entry", &mut entry),
         cases.len(),
     );
     let inside = inside.download(&device).unwrap();

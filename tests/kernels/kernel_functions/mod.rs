@@ -16,7 +16,7 @@ mod transfer;
 use std::sync::Arc;
 
 use angioray::extent::ImageSize;
-use angioray::gpu::{Buffer, Device, Element, Launch, Parameter, Pass, Timings};
+use angioray::gpu::{Args, Buffer, Device, Element, Pass, Timings};
 use angioray::octree::Leaf;
 use angioray::render::{Lanes, Variant};
 use angioray::scene::{Filter, Storage};
@@ -36,15 +36,9 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32) -> Variant {
 
 const U8: VoxelType = VoxelType::U8;
 
-/// `kernels/test/<name>.cl`, built for `variant`.
-fn build(
-    device: &Device,
-    name: &'static str,
-    variant: Variant,
-    signature: Vec<Parameter>,
-) -> Arc<Pass> {
-    let pass = Pass::new("test", name, variant.defines(), signature);
-    pass.built(device).unwrap()
+/// `kernels/test/<name>.cl` for `variant`.
+fn build(name: &'static str, variant: Variant) -> Arc<Pass> {
+    Pass::new("test", name, variant.defines(), [1, 1])
 }
 
 fn upload<T: Element>(device: &Device, elements: &[T]) -> Buffer<T> {
@@ -56,12 +50,11 @@ fn room<T: Element>(device: &Device, len: usize) -> Buffer<T> {
     upload(device, &vec![T::zeroed(); len])
 }
 
-/// One work-item for each of `count` inputs. The launch's buffers must outlive the call: temporaries
-/// do only inside its own argument.
-fn run(device: &Device, launch: Launch, count: usize) {
+/// One work-item for each of `count` inputs.
+fn run(device: &Device, pass: &Arc<Pass>, args: Args, count: usize) {
     let size = ImageSize::new(count as u32, 1).unwrap();
     let mut timings = Timings::default();
-    launch.run(size, Some([16, 1]), &mut timings).unwrap();
+    timings.add(pass.launch(device, args, size, Some([16, 1])).unwrap());
     timings.finish(device).unwrap();
 }
 

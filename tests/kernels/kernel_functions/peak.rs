@@ -1,6 +1,6 @@
 //! Peaks between two samples.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::Filter;
 use angioray::volume::VoxelType;
 
@@ -51,40 +51,24 @@ impl Path {
     /// Looks between the t of both ends, with sign and goal.
     fn peaks(&self, rays: &[[f32; 4]], any: bool) -> Option<Vec<Peak>> {
         let device = common::device()?;
-        let signature = vec![
-            value::<u32>("count"),
-            value::<[u32; 4]>("size"),
-            input::<f32>("voxels"),
-            value::<[f32; 4]>("start"),
-            value::<[f32; 4]>("dir"),
-            value::<f32>("length_mm"),
-            value::<u32>("first"),
-            input::<[f32; 4]>("rays"),
-            output::<[f32; 4]>("peaks"),
-            output::<u32>("found"),
-        ];
-        let pass = build(
-            &device,
-            "peak",
-            variant(VoxelType::F32, Filter::Linear, 8),
-            signature,
-        );
+        let pass = build("peak", variant(VoxelType::F32, Filter::Linear, 8));
         let [nx, ny, nz] = self.size;
         let mut peaks = room::<[f32; 4]>(&device, rays.len());
         let mut found = room::<u32>(&device, rays.len());
         run(
             &device,
-            pass.launch(&device)
-                .value(&(rays.len() as u32))
-                .value(&[nx, ny, nz, 0])
-                .input(&upload(&device, &self.voxels))
-                .value(&self.start)
-                .value(&self.dir)
-                .value(&self.length_mm)
-                .value(&u32::from(any))
-                .input(&upload(&device, rays))
-                .output(&mut peaks)
-                .output(&mut found),
+            &pass,
+            Args::new()
+                .value("count", &(rays.len() as u32))
+                .value("size", &[nx, ny, nz, 0])
+                .read("voxels", &upload(&device, &self.voxels))
+                .value("start", &self.start)
+                .value("dir", &self.dir)
+                .value("length_mm", &self.length_mm)
+                .value("first", &u32::from(any))
+                .read("rays", &upload(&device, rays))
+                .write("peaks", &mut peaks)
+                .write("found", &mut found),
             rays.len(),
         );
         let peaks = peaks.download(&device).unwrap();

@@ -1,6 +1,6 @@
 //! The two models of reflection.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::Filter;
 
 use super::{Random, U8, build, common, dot, room, run, upload, variant, xyz};
@@ -35,34 +35,20 @@ fn points(random: &mut Random) -> Points {
 fn on_device(points: &Points, model: u32) -> Option<Vec<[f32; 4]>> {
     let device = common::device()?;
     let count = points.colors.len();
-    let signature = vec![
-        value::<u32>("count"),
-        value::<u32>("model"),
-        value::<[f32; 4]>("numbers"),
-        input::<[f32; 4]>("colors"),
-        input::<[f32; 4]>("normals"),
-        input::<[f32; 4]>("toward_eye"),
-        input::<[f32; 4]>("toward_light"),
-        output::<[f32; 4]>("seen"),
-    ];
-    let pass = build(
-        &device,
-        "reflection",
-        variant(U8, Filter::Linear, 8),
-        signature,
-    );
+    let pass = build("reflection", variant(U8, Filter::Linear, 8));
     let mut seen = room(&device, count);
     run(
         &device,
-        pass.launch(&device)
-            .value(&(count as u32))
-            .value(&model)
-            .value(&NUMBERS)
-            .input(&upload(&device, &points.colors))
-            .input(&upload(&device, &points.normals))
-            .input(&upload(&device, &points.toward_eye))
-            .input(&upload(&device, &points.toward_light))
-            .output(&mut seen),
+        &pass,
+        Args::new()
+            .value("count", &(count as u32))
+            .value("model", &model)
+            .value("numbers", &NUMBERS)
+            .read("colors", &upload(&device, &points.colors))
+            .read("normals", &upload(&device, &points.normals))
+            .read("toward_eye", &upload(&device, &points.toward_eye))
+            .read("toward_light", &upload(&device, &points.toward_light))
+            .write("seen", &mut seen),
         count,
     );
     Some(seen.download(&device).unwrap())

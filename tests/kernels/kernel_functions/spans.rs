@@ -1,6 +1,6 @@
 //! The sample lattice and its spans of one node.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::Filter;
 
 use super::{Random, U8, build, common, room, run, upload, variant, xyz};
@@ -36,26 +36,7 @@ fn on_device(
     rays: &[([f32; 4], [f32; 4])],
 ) -> Option<Vec<Walked>> {
     let device = common::device()?;
-    let signature = vec![
-        value::<u32>("count"),
-        value::<u32>("room"),
-        value::<[u32; 4]>("size"),
-        value::<u32>("level"),
-        value::<f32>("step_mm"),
-        input::<[f32; 4]>("origins"),
-        input::<[f32; 4]>("dirs"),
-        output::<[u32; 4]>("sizes"),
-        output::<[f32; 4]>("points"),
-        output::<[u32; 4]>("cells"),
-        output::<[u32; 4]>("spans_out"),
-        output::<[u32; 4]>("lasts"),
-    ];
-    let pass = build(
-        &device,
-        "spans",
-        variant(U8, Filter::Linear, leaf),
-        signature,
-    );
+    let pass = build("spans", variant(U8, Filter::Linear, leaf));
     let origins: Vec<[f32; 4]> = rays.iter().map(|ray| ray.0).collect();
     let dirs: Vec<[f32; 4]> = rays.iter().map(|ray| ray.1).collect();
     let mut sizes = room::<[u32; 4]>(&device, rays.len());
@@ -64,19 +45,20 @@ fn on_device(
         [(); 3].map(|()| room::<[u32; 4]>(&device, rays.len() * ROOM));
     run(
         &device,
-        pass.launch(&device)
-            .value(&(rays.len() as u32))
-            .value(&(ROOM as u32))
-            .value(&[size[0], size[1], size[2], 0])
-            .value(&level)
-            .value(&step_mm)
-            .input(&upload(&device, &origins))
-            .input(&upload(&device, &dirs))
-            .output(&mut sizes)
-            .output(&mut points)
-            .output(&mut cells)
-            .output(&mut spans)
-            .output(&mut lasts),
+        &pass,
+        Args::new()
+            .value("count", &(rays.len() as u32))
+            .value("room", &(ROOM as u32))
+            .value("size", &[size[0], size[1], size[2], 0])
+            .value("level", &level)
+            .value("step_mm", &step_mm)
+            .read("origins", &upload(&device, &origins))
+            .read("dirs", &upload(&device, &dirs))
+            .write("sizes", &mut sizes)
+            .write("points", &mut points)
+            .write("cells", &mut cells)
+            .write("spans_out", &mut spans)
+            .write("lasts", &mut lasts),
         rays.len(),
     );
     let sizes = sizes.download(&device).unwrap();

@@ -1,6 +1,6 @@
 //! The transfer function and the absorption of an opacity.
 
-use angioray::gpu::{input, output, value};
+use angioray::gpu::Args;
 use angioray::scene::{Filter, TransferFunction};
 
 use super::{Random, U8, build, common, room, run, upload, variant};
@@ -53,30 +53,18 @@ impl Knots {
 
 fn on_device(knots: &Knots, values: &[f32]) -> Option<Vec<[f32; 4]>> {
     let device = common::device()?;
-    let signature = vec![
-        value::<u32>("count"),
-        value::<u32>("knots"),
-        input::<f32>("knot_values"),
-        input::<[f32; 4]>("knot_colors"),
-        input::<f32>("values"),
-        output::<[f32; 4]>("colors"),
-    ];
-    let pass = build(
-        &device,
-        "transfer",
-        variant(U8, Filter::Linear, 8),
-        signature,
-    );
+    let pass = build("transfer", variant(U8, Filter::Linear, 8));
     let mut colors = room(&device, values.len());
     run(
         &device,
-        pass.launch(&device)
-            .value(&(values.len() as u32))
-            .value(&(knots.values.len() as u32))
-            .input(&upload(&device, &knots.values))
-            .input(&upload(&device, &knots.colors))
-            .input(&upload(&device, values))
-            .output(&mut colors),
+        &pass,
+        Args::new()
+            .value("count", &(values.len() as u32))
+            .value("knots", &(knots.values.len() as u32))
+            .read("knot_values", &upload(&device, &knots.values))
+            .read("knot_colors", &upload(&device, &knots.colors))
+            .read("values", &upload(&device, values))
+            .write("colors", &mut colors),
         values.len(),
     );
     Some(colors.download(&device).unwrap())
@@ -151,28 +139,17 @@ fn absorption_keeps_the_digits_of_small_opacities() {
     opacities.extend([0.0, 0.5, 0.999, 0.999_999, 1.0f32.next_down(), 1.0]);
     let unit_length_mm = 2.5f32;
     let most = -(-TransferFunction::MAX_OPACITY).ln_1p() as f32;
-    let signature = vec![
-        value::<u32>("count"),
-        value::<f32>("unit_length_mm"),
-        value::<f32>("most_absorption"),
-        input::<f32>("opacities"),
-        output::<f32>("per_mm"),
-    ];
-    let pass = build(
-        &device,
-        "absorption",
-        variant(U8, Filter::Linear, 8),
-        signature,
-    );
+    let pass = build("absorption", variant(U8, Filter::Linear, 8));
     let mut per_mm = room::<f32>(&device, opacities.len());
     run(
         &device,
-        pass.launch(&device)
-            .value(&(opacities.len() as u32))
-            .value(&unit_length_mm)
-            .value(&most)
-            .input(&upload(&device, &opacities))
-            .output(&mut per_mm),
+        &pass,
+        Args::new()
+            .value("count", &(opacities.len() as u32))
+            .value("unit_length_mm", &unit_length_mm)
+            .value("most_absorption", &most)
+            .read("opacities", &upload(&device, &opacities))
+            .write("per_mm", &mut per_mm),
         opacities.len(),
     );
     let per_mm = per_mm.download(&device).unwrap();

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::super::{Bench, Conditions, Dataset, Experiment, Outcome, Protocol};
 use crate::error::Result;
 use crate::frame::error::normal_error;
-use crate::frame::{Frame, Wanted};
+use crate::frame::{DEPTH, Frame, Layer, NORMAL, Wanted};
 use crate::lab::report::{Cell, Shown, Table};
 use crate::reference;
 use crate::render::Rendering;
@@ -79,11 +79,7 @@ fn measure(
     dataset: &Dataset,
     normal: Option<fn(DVec3) -> DVec3>,
 ) -> Result<(Vec<Vec<Cell>>, String)> {
-    let wanted = Wanted {
-        depth: true,
-        normal: true,
-        ..Wanted::default()
-    };
+    let wanted = Wanted::NONE.with([Layer::Depth, Layer::Normal]);
     let surface = dataset.surface(bench.preset.side_px())?;
     let mut reference = reference::render(&dataset.volume, &surface, wanted, bench.progress)?;
     if let Some(normal) = normal {
@@ -137,11 +133,12 @@ fn measure(
 
 /// Replaces the normals of a frame by those of a closed form where its rays hit.
 fn put_normals(frame: &mut Frame, scene: &Scene, normal: fn(DVec3) -> DVec3) {
-    let (Some(depths), Some(normals)) = (&frame.depth, &mut frame.normal) else {
+    let Some(mut normals) = frame.layers.take(NORMAL) else {
         return;
     };
+    let depths = frame.plane(DEPTH).unwrap_or_default();
     let width = scene.size.width() as usize;
-    for (pixel, (depth_mm, place)) in depths.iter().zip(normals).enumerate() {
+    for (pixel, (depth_mm, place)) in depths.iter().zip(&mut normals).enumerate() {
         if depth_mm.is_finite() {
             let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
             let ray = scene.camera.ray(scene.size, x, y);
@@ -149,4 +146,5 @@ fn put_normals(frame: &mut Frame, scene: &Scene, normal: fn(DVec3) -> DVec3) {
             *place = normal(p_world).to_array().map(|c| c as f32);
         }
     }
+    frame.layers.insert(NORMAL, normals);
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::super::papers::{LazyDataset, plain_steps};
 use super::super::{Bench, Dataset, Experiment, Illustration, Outcome};
 use crate::error::Result;
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, KIND, Layer, NODES, STEPS, Wanted};
 use crate::lab::report::{Shown, Table};
 use crate::scene::{Refine, Scene, Traverse};
 use crate::volume::PhantomKind;
@@ -75,11 +75,7 @@ fn scene(bench: &Bench, dataset: &Dataset) -> Result<Scene> {
 }
 
 fn frame(bench: &Bench, dataset: &Dataset) -> Result<Frame> {
-    let wanted = Wanted {
-        counters: true,
-        kind: true,
-        ..Wanted::DISPLAY
-    };
+    let wanted = Wanted::DISPLAY.with(Layer::COUNTERS).with([Layer::Kind]);
     let octree = bench.octree(dataset)?;
     let mut renderer = bench.renderer(dataset, &octree)?;
     Ok(renderer.render(&scene(bench, dataset)?, wanted)?.frame)
@@ -87,8 +83,8 @@ fn frame(bench: &Bench, dataset: &Dataset) -> Result<Frame> {
 
 impl IterationCounts {
     fn of(frame: &Frame) -> Self {
-        let planes = [&frame.nodes, &frame.steps, &frame.kind];
-        let [nodes, steps, kinds] = planes.map(|plane| plane.as_deref().unwrap_or_default());
+        let planes = [NODES, STEPS, KIND].map(|key| frame.plane(key));
+        let [nodes, steps, kinds] = planes.map(Option::unwrap_or_default);
         let mut histogram = Self {
             bins: Vec::new(),
             iterations: [0; 3],
@@ -156,7 +152,7 @@ fn finding(volume: &str, histogram: &IterationCounts) -> String {
 
 /// The iterations as grey levels: white none, black the most of any ray.
 fn map(volume: &str, mut frame: Frame) -> Illustration {
-    let nodes = frame.nodes.take().unwrap_or_default();
+    let nodes = frame.layers.take(NODES).unwrap_or_default();
     let max = nodes.iter().copied().max().unwrap_or(0);
     let grey = |&nodes: &u32| {
         let level = 1.0 - nodes as f32 / max.max(1) as f32;
@@ -179,18 +175,10 @@ mod tests {
     #[test]
     fn rays_are_counted_by_what_they_met_and_how_far_they_went() {
         let size = ImageSize::new(3, 2).unwrap();
-        let frame = Frame {
-            size,
-            color: vec![[0.0; 4]; 6],
-            display: None,
-            depth: None,
-            normal: None,
-            value: None,
-            steps: Some(vec![5, 2, 0, 0, 9, 1]),
-            nodes: Some(vec![1, 7, 0, 4, 8, 3]),
-            kind: Some(vec![1, 0, 0, 0, 2, 0]),
-            certificate: None,
-        };
+        let mut frame = Frame::blank(size, Wanted::NONE).unwrap();
+        frame.layers.insert(STEPS, vec![5, 2, 0, 0, 9, 1]);
+        frame.layers.insert(NODES, vec![1, 7, 0, 4, 8, 3]);
+        frame.layers.insert(KIND, vec![1, 0, 0, 0, 2, 0]);
         let histogram = IterationCounts::of(&frame);
         // Bins: 0; 1; 2, 3; 4 to 7; 8 to 15.
         let expected = [[0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 1, 1], [1, 0, 0]];

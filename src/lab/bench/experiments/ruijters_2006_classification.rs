@@ -130,13 +130,13 @@ fn measure(bench: &Bench, dataset: &Dataset) -> Result<Vec<Changed>> {
                 .iter()
                 .map(|&share| changed(dataset, SIDE_PX, what, share, traverse))
                 .collect::<Result<_>>()?;
-            let first = renderer.render(&scenes[0], Wanted::default())?;
+            let first = renderer.render(&scenes[0], Wanted::NONE)?;
             let first_bytes = *first_bytes.get_or_insert(first.uploaded_bytes);
             let mut uploaded_bytes = 0;
             let rounds = bench.times_of(&[()], repeats(bench), |(), round| {
                 let scene = &scenes[round % scenes.len()];
                 renderer.forget_classes();
-                let rendering = renderer.render(scene, Wanted::default())?;
+                let rendering = renderer.render(scene, Wanted::NONE)?;
                 uploaded_bytes = rendering.uploaded_bytes.max(uploaded_bytes);
                 Ok(rendering.classify_ms)
             })?;

@@ -9,7 +9,7 @@ use super::super::papers::axis;
 use super::super::{Bench, Conditions, Experiment, Outcome, Preset, Protocol, random_scenes};
 use crate::error::Result;
 use crate::frame::error::{color_error, depth_error, value_error};
-use crate::frame::{Frame, Wanted, percentile};
+use crate::frame::{Frame, Layer, Wanted, percentile};
 use crate::lab::measure::interleaved;
 use crate::lab::report::{Point, Scatter, Section, Shown, Table};
 use crate::lab::tolerance::{CONFIDENCE, Task, candidates, choose};
@@ -239,12 +239,12 @@ fn ratio(chosen: &Scene, others: &[Scene], renderer: &mut Renderer, bench: &Benc
 
 /// The planes that a metric compares.
 fn wanted(metric: ErrorMetric) -> Wanted {
-    let geometry = matches!(metric, ErrorMetric::Depth | ErrorMetric::Missed);
-    Wanted {
-        display: !geometry && metric != ErrorMetric::Value,
-        depth: geometry,
-        value: metric == ErrorMetric::Value,
-        ..Wanted::default()
+    match metric {
+        ErrorMetric::Depth | ErrorMetric::Missed => Wanted::NONE.with([Layer::Depth]),
+        ErrorMetric::Value => Wanted::NONE.with([Layer::Value]),
+        ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {
+            Wanted::DISPLAY
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::super::papers::axis;
 use super::super::{Bench, Conditions, Dataset, Experiment, Outcome};
 use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::lab::measure::{Borderline, Closeness, Times, Tradeoff, front};
 use crate::lab::report::{Cell, Point, Scatter, Section, Shown, Table};
 use crate::reference;
@@ -289,10 +289,7 @@ fn measure(bench: &Bench, dataset: &Dataset) -> Result<Measured> {
     let settings = Setting::all().into_iter();
     let scenes = settings.map(|setting| setting.of(surface.clone()));
     let scenes: Vec<Scene> = scenes.collect::<Result<_>>()?;
-    let depth = Wanted {
-        depth: true,
-        ..Wanted::default()
-    };
+    let depth = Wanted::NONE.with([Layer::Depth]);
     let reference = reference::render(&dataset.volume, &surface, depth, bench.progress)?;
     let voxel_mm = dataset.volume.geometry().smallest_spacing_mm();
     let mut borderline = Borderline::new(&dataset.volume, &surface, Closeness::Jumps)?;
@@ -306,10 +303,7 @@ fn measure(bench: &Bench, dataset: &Dataset) -> Result<Measured> {
     let projection = dataset.maximum(side_px)?;
     let methods = Method::all().into_iter();
     let scenes: Vec<Scene> = methods.map(|m| m.of(projection.clone())).collect();
-    let value = Wanted {
-        value: true,
-        ..Wanted::default()
-    };
+    let value = Wanted::NONE.with([Layer::Value]);
     let reference = reference::render(&dataset.volume, &projection, value, bench.progress)?;
     let width = dataset.volume.range().width();
     let value_errors = errors(&mut renderer, &scenes, value, |frame| {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::frame::error::{color_error, depth_error, flip, ssim};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::lab::bench::{Bench, Dataset, Protocol, display_ms};
 use crate::lab::measure::{Borderline, Closeness, Counts, Times};
 use crate::octree::{Leaf, Octree};
@@ -173,10 +173,7 @@ impl<'a> References<'a> {
         let index = match known {
             Some(index) => index,
             None => {
-                let wanted = Wanted {
-                    depth: true,
-                    ..Wanted::DISPLAY
-                };
+                let wanted = Wanted::DISPLAY.with([Layer::Depth]);
                 let volume = &self.dataset.volume;
                 let reference = reference::render(volume, &scene, wanted, self.bench.progress)?;
                 self.known.push((scene, reference));

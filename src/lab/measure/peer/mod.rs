@@ -18,7 +18,7 @@ use tempfile::TempDir;
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::Frame;
+use crate::frame::{DEPTH, Frame, Layers};
 use crate::reference::display;
 use crate::scene::{Camera, Scene, Tone};
 use crate::volume::Volume;
@@ -213,46 +213,39 @@ impl Peer {
     /// The peer fails, or has forgotten the scene; a plane is missing, has not the picture's size, or
     /// holds what no picture can.
     pub fn render(&mut self, scene: &PeerScene) -> Result<PeerFrame> {
-        const COLOR: &str = "color.f32";
-        const DEPTH: &str = "depth.f32";
-        for old in [COLOR, DEPTH].map(|name| self.folder.path().join(name)) {
+        const COLOR_FILE: &str = "color.f32";
+        const DEPTH_FILE: &str = "depth.f32";
+        for old in [COLOR_FILE, DEPTH_FILE].map(|name| self.folder.path().join(name)) {
             if old.exists() {
                 fs::remove_file(&old).map_err(|cause| Error::writing(&old, "remove", &cause))?;
             }
         }
         let (time, has_depth) = self.draw(RenderRequest {
-            color: Some(self.text_of(COLOR)?),
-            depth: Some(self.text_of(DEPTH)?),
+            color: Some(self.text_of(COLOR_FILE)?),
+            depth: Some(self.text_of(DEPTH_FILE)?),
             ..RenderRequest::timed(scene.id)
         })?;
         let size = scene.size;
-        let color = self.plane(COLOR, size, 4)?;
+        let color = self.plane(COLOR_FILE, size, 4)?;
         if !color.iter().all(|v| v.is_finite()) {
             return Err((self.process).failed("gave a colour that is infinite or NaN"));
         }
         let color: Vec<[f32; 4]> = color.as_chunks().0.to_vec();
         let display =
             |&pixel: &[f32; 4]| display(pixel.map(f64::from), &scene.tone).map(|c| c as f32);
-        let depth = if has_depth {
-            let depth = self.plane(DEPTH, size, 1)?;
+        let mut layers = Layers::default();
+        if has_depth {
+            let depth = self.plane(DEPTH_FILE, size, 1)?;
             if !depth.iter().all(|&mm| mm >= 0.0) {
                 return Err((self.process).failed("gave a depth that is negative or NaN"));
             }
-            Some(depth)
-        } else {
-            None
-        };
+            layers.insert(DEPTH, depth);
+        }
         let frame = Frame {
             size,
             display: Some(color.iter().map(display).collect()),
             color,
-            depth,
-            normal: None,
-            value: None,
-            steps: None,
-            nodes: None,
-            kind: None,
-            certificate: None,
+            layers,
         };
         Ok(PeerFrame { time, frame })
     }

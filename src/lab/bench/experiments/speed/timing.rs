@@ -6,7 +6,7 @@ use super::candidate::Candidate;
 use super::errors::{PictureError, SparseReference};
 use super::picture::PictureKind;
 use crate::error::{Error, Result};
-use crate::frame::{Wanted, median};
+use crate::frame::{Layer, Wanted, median};
 use crate::lab::bench::protocol::turned;
 use crate::lab::bench::{Bench, Dataset, Preset};
 use crate::lab::measure::{
@@ -288,16 +288,11 @@ fn evaluated(
     renderer: &mut Renderer,
 ) -> Result<TimedRow> {
     let scene = &candidate.scene;
-    let counting = Wanted {
-        counters: true,
-        ..Wanted::DISPLAY
-    };
+    let counting = Wanted::DISPLAY.with(Layer::COUNTERS);
     let counted = renderer.render(scene, counting)?.frame;
-    let judging = Wanted {
-        counters: false,
-        kind: false,
-        ..evaluated_planes(&scene.picture)
-    };
+    let judging = evaluated_planes(&scene.picture)
+        .without(Layer::COUNTERS)
+        .without([Layer::Kind]);
     let frame = renderer.render(scene, judging)?.frame;
     Ok(TimedRow {
         runner: Runner::Ours,

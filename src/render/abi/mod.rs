@@ -1,0 +1,15 @@
+//! What host and kernels agree on: structs, constants, the switches of a build, and units.
+
+mod constants;
+mod convert;
+mod lanes;
+mod structs;
+mod variant;
+
+pub use constants::{
+    BRICK, CLASS_BITS, Class, KernelEnum, MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, SMOOTH_PARTS,
+};
+pub use convert::{StoredIso, shading, step_mm, stored, stored_window, struct_layouts, tone};
+pub use lanes::Lanes;
+pub use structs::{EmissionCast, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid};
+pub use variant::{Variant, voxel_cl_name};

@@ -1,0 +1,150 @@
+//! The passes of `dvr`: one cast.
+
+use crate::error::{Error, Result};
+use crate::frame::Layer;
+use crate::gpu::Buffer;
+use crate::render::abi::{EmissionCast, KernelEnum, shading};
+use crate::render::occupancy::{Opacity, stand_ins};
+use crate::render::passes::{EmissionInputs, Run, adaptive_emission, cast_emission};
+use crate::render::resources::{DeviceGradient, DeviceLayers, DeviceTransfer, Tables};
+use crate::scene::{Emission, Phong, Rgb, TransferFunction, Traverse};
+
+use super::planes::Planes;
+use super::view::View;
+
+/// Uploads the transfer function, casts.
+pub fn emission(
+    run: &mut Run,
+    view: &View,
+    emission: &Emission,
+    opacity: &Opacity,
+) -> Result<Planes> {
+    check_homogeneity(emission)?;
+    let mut layers = DeviceLayers::default();
+    layers.allocate(run.device, run.rays.size(), &layers_written(view))?;
+
+    let (quadrature, shaded) = (emission.quadrature, emission.phong.is_some());
+    let with_values = layers.has(Layer::Value);
+    let tables = Tables::of(quadrature.method, run.variant.filter, with_values);
+    let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
+    let node_average = node_average(run, view, emission)?;
+    let inputs = EmissionInputs {
+        cast_inputs: view.inputs,
+        transfer: &transfer,
+        node_average: node_average.as_ref(),
+        gradient: if shaded || layers.has(Layer::Normal) {
+            view.gradient
+        } else {
+            DeviceGradient::NONE
+        },
+        cast: emission_cast(view, emission, &transfer, node_average.is_some()),
+        shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
+        shaded,
+    };
+    let mut color = run.plane("colour plane")?;
+    if quadrature.is_stepped() {
+        cast_emission(run, quadrature.method, &inputs, &mut color, &mut layers)?;
+    } else {
+        adaptive_emission(run, &inputs, &mut color, &mut layers)?;
+    }
+    let averages_bytes = node_average.as_ref().map_or(0, |averages| averages.bytes());
+    Ok(Planes {
+        color,
+        display: None,
+        layers,
+        other_bytes: transfer.bytes() + averages_bytes,
+    })
+}
+
+fn check_homogeneity(emission: &Emission) -> Result<()> {
+    let refuses = emission.phong.is_some() || !emission.quadrature.is_stepped();
+    if emission.homogeneity.is_some() && refuses {
+        return Err(Error::usage(
+            "homogeneous nodes go with neither shading nor the adaptive quadrature",
+        ));
+    }
+    Ok(())
+}
+
+/// The layers that the cast writes.
+fn layers_written(view: &View) -> Vec<Layer> {
+    let wanted = view.wanted;
+    let mut layers = Vec::new();
+    if wanted.has_any([Layer::Depth, Layer::Value]) {
+        layers.extend([Layer::Depth, Layer::Value]);
+    }
+    if wanted.has(Layer::Normal) {
+        layers.push(Layer::Normal);
+    }
+    if wanted.has_any(Layer::COUNTERS) {
+        layers.extend(Layer::COUNTERS);
+    }
+    layers
+}
+
+/// What stands for each leaf. Where no leaf counts as homogeneous the rays are followed as without.
+fn node_average(run: &Run, view: &View, emission: &Emission) -> Result<Option<Buffer<f32>>> {
+    if emission.homogeneity.is_none() || !view.inputs.occupancy.has_homogeneous() {
+        return Ok(None);
+    }
+    let stand_ins = stand_ins(view.octree, run.variant.filter);
+    Buffer::upload(run.device, "octree's averages", &stand_ins).map(Some)
+}
+
+/// The share of the adaptive quadrature's bound that early termination may use up.
+const ENDED_EARLY: f64 = 0.25;
+
+fn emission_cast(
+    view: &View,
+    emission: &Emission,
+    on_device: &DeviceTransfer,
+    through_leaves: bool,
+) -> EmissionCast {
+    let Emission {
+        quadrature,
+        ref transfer,
+        ..
+    } = *emission;
+    // What a bound on premultiplied light leaves for opacity: all behind may be this bright.
+    let bound = quadrature.bound / emission.phong.map_or(1.0, reflected_at_most).max(1.0);
+    let termination = 1.0 - emission.termination;
+    let min_transmittance = if quadrature.is_stepped() {
+        termination
+    } else {
+        termination.min(ENDED_EARLY * bound)
+    };
+    EmissionCast {
+        step_mm: view.step_mm(),
+        unit_length_mm: transfer.unit_length_mm() as f32,
+        most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
+        least_transmission: min_transmittance as f32,
+        knots: on_device.knots,
+        traverse: if through_leaves {
+            traverse_through_leaves(view)
+        } else {
+            view.traverse()
+        },
+        bound: ((1.0 - ENDED_EARLY) * bound) as f32,
+        color_spread: on_device.color_spread,
+        absorbs_from: on_device.absorbing[0],
+        absorbs_to: on_device.absorbing[1],
+        layers_from: Emission::LAYERS_FROM,
+        pad: 0,
+    }
+}
+
+/// How kernels are to traverse where every leaf must be met: without skipping, one leaf after the other.
+fn traverse_through_leaves(view: &View) -> u32 {
+    let sampling = &view.scene.sampling;
+    let traverse = if sampling.skip {
+        sampling.traverse
+    } else {
+        Traverse::Uniform
+    };
+    Some(traverse).number()
+}
+
+/// The most light that white reflects.
+fn reflected_at_most(phong: Phong) -> f64 {
+    phong.ambient + phong.diffuse + phong.specular
+}

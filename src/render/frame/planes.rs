@@ -1,0 +1,101 @@
+//! The planes that a picture's passes leave on the device, and their way back to the host.
+
+use crate::error::Result;
+use crate::extent::ImageSize;
+use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
+use crate::gpu::{Buffer, Device};
+use crate::render::resources::DeviceLayers;
+use crate::scene::Emission;
+use crate::volume::Rescale;
+
+/// Planes of a picture on the device.
+pub struct Planes {
+    /// Linear light, premultiplied.
+    pub color: Buffer<[f32; 4]>,
+    /// The picture as it is displayed, where that is wanted.
+    pub display: Option<Buffer<[f32; 4]>>,
+    /// The layers that are wanted, or were needed on the way; values are in stored units. A medium has no
+    /// kind: it is there where it is opaque enough to have layers.
+    pub layers: DeviceLayers,
+    /// Bytes of tables and planes that only the passes needed.
+    pub other_bytes: u64,
+}
+
+impl Planes {
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        let display = self.display.as_ref().map_or(0, |display| display.bytes());
+        self.color.bytes() + display + self.layers.bytes() + self.other_bytes
+    }
+
+    /// Waits for the passes and copies the wanted planes; values become physical by `rescale`. A
+    /// wanted layer that the picture does not have (a projection's normal) holds its fill value.
+    ///
+    /// # Errors
+    /// The device failed; not enough memory.
+    pub fn read_back(
+        &self,
+        device: &Device,
+        size: ImageSize,
+        wanted: Wanted,
+        rescale: Rescale,
+    ) -> Result<Frame> {
+        let display = self.display.as_ref().filter(|_| wanted.display);
+        let mut frame = Frame {
+            size,
+            color: self.color.download(device)?,
+            display: display.map(|plane| plane.download(device)).transpose()?,
+            layers: Default::default(),
+        };
+        let with_kind = wanted.with_if(wanted.has(Layer::Value), Layer::Kind);
+        for layer in with_kind.layers() {
+            if let Some(plane) = self.plane(device, layer, &frame)? {
+                frame.layers.insert_plane(layer, plane);
+            }
+        }
+        rescale_values(&mut frame, rescale);
+        if !wanted.has(Layer::Kind) {
+            frame.layers.take(KIND);
+        }
+        Ok(frame)
+    }
+
+    /// The plane of a wanted layer.
+    fn plane(&self, device: &Device, layer: Layer, frame: &Frame) -> Result<Option<Plane>> {
+        if let Some(plane) = self.layers.download(device, layer)? {
+            return Ok(Some(plane));
+        }
+        if layer == Layer::Kind {
+            return Ok(Some(Plane::Counts(kind_of_medium(&frame.color))));
+        }
+        let pixels = frame.size.pixels();
+        let filled = |value| Plane::filled(value, pixels);
+        layer.empty().map(filled).transpose()
+    }
+}
+
+/// Makes stored values physical where something was met.
+fn rescale_values(frame: &mut Frame, rescale: Rescale) {
+    let Some(mut values) = frame.layers.take(VALUE) else {
+        return;
+    };
+    let kinds = frame.plane(KIND).unwrap_or_default();
+    for (value, &kind) in values.iter_mut().zip(kinds) {
+        if kind != Kind::Nothing as u32 {
+            *value = rescale.physical(f64::from(*value)) as f32;
+        }
+    }
+    frame.layers.insert(VALUE, values);
+}
+
+/// A medium is a surface where it is opaque enough to have layers.
+fn kind_of_medium(color: &[[f32; 4]]) -> Vec<u32> {
+    let kind = |&[_, _, _, opacity]: &[f32; 4]| {
+        if opacity >= Emission::LAYERS_FROM {
+            Kind::Surface
+        } else {
+            Kind::Nothing
+        }
+    };
+    color.iter().map(|color| kind(color) as u32).collect()
+}

@@ -1,0 +1,17 @@
+//! The skip structure: what is known of the octree's nodes and of the cells before a ray meets them.
+
+mod cache;
+mod cells;
+mod classes;
+mod criterion;
+mod distance;
+mod floor;
+mod homogeneity;
+mod occupancy_map;
+mod opacity_ranges;
+
+pub use cache::OccupancyCache;
+pub use criterion::{Criterion, Opacity};
+pub use floor::Floor;
+pub use homogeneity::stand_ins;
+pub use occupancy_map::Occupancy;

@@ -1,0 +1,46 @@
+//! The inputs of every cast beside its own numbers.
+
+use crate::gpu::Args;
+use crate::render::occupancy::Occupancy;
+use crate::render::resources::{DeviceClip, DeviceGradient, DeviceVolume};
+
+use super::run::Run;
+
+/// The inputs of every cast: the volume, its occupancy, and the clip planes.
+#[derive(Clone, Copy)]
+pub struct CastInputs<'a> {
+    /// The volume, but for its voxels.
+    pub volume: &'a DeviceVolume,
+    /// Which of its nodes and cells matter.
+    pub occupancy: &'a Occupancy,
+    /// The scene's clip planes.
+    pub clip: &'a DeviceClip,
+}
+
+impl CastInputs<'_> {
+    /// Begins the list of a cast that skips by classes and the bits of cells.
+    pub fn by_cells(&self, run: &Run) -> Args {
+        Args::new()
+            .with(run.voxels)
+            .read("node_class", &self.occupancy.node_class)
+            .read("levels", &self.volume.levels)
+            .read("cells", &self.occupancy.cells)
+    }
+
+    /// Begins the list of a cast that skips by classes and the ranges of nodes.
+    pub fn by_ranges(&self, run: &Run) -> Args {
+        Args::new()
+            .with(run.voxels)
+            .read("node_class", &self.occupancy.node_class)
+            .read("node_range", &self.volume.node_range)
+            .read("levels", &self.volume.levels)
+    }
+
+    /// Adds the rays and where they see the volume; `gradient` where normals are made use of.
+    pub fn along_rays(&self, args: Args, run: &Run, gradient: DeviceGradient) -> Args {
+        args.with(self.clip)
+            .with(gradient)
+            .value("volume", &self.volume.grid)
+            .with(&run.rays)
+    }
+}

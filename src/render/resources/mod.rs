@@ -1,0 +1,24 @@
+//! What lies on the device for many frames or for one: voxels, the octree's tables, the transfer function,
+//! clip planes, gradients, rays, planes of layers.
+
+mod clip;
+mod device_transfer;
+mod directions;
+mod gradient;
+mod held_volume;
+mod layers;
+mod rays;
+mod transfer;
+mod volume;
+mod voxels;
+
+pub use clip::DeviceClip;
+pub use device_transfer::{DeviceTransfer, Tables};
+pub use directions::{AngleError, Directions};
+pub use gradient::{DeviceDirections, DeviceGradient, GradientFigures, needed_gradients};
+pub use held_volume::HeldVolume;
+pub use layers::DeviceLayers;
+pub use rays::RaySource;
+pub use transfer::{Knots, unit_absorption};
+pub use volume::DeviceVolume;
+pub use voxels::DeviceVoxels;

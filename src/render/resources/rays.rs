@@ -1,0 +1,240 @@
+//! The rays of a launch: where they come from, and the one place where their set-up narrows from double to
+//! single precision.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::extent::ImageSize;
+use crate::gpu::{Args, Group};
+use crate::render::abi::RayGrid;
+use crate::scene::{Camera, Lens};
+use crate::volume::Volume;
+
+/// Where the rays of a launch come from: which arguments kernels read them from, and how many there are.
+pub enum RaySource {
+    /// A ray through the centre of every pixel of a camera's picture.
+    Camera {
+        /// The rays, linear over the picture.
+        grid: RayGrid,
+        /// The picture's size.
+        size: ImageSize,
+    },
+}
+
+impl RaySource {
+    /// The rays that a camera sends through a picture of this size.
+    pub fn of_camera(camera: &Camera, size: ImageSize, volume: &Volume) -> Self {
+        Self::Camera {
+            grid: ray_grid(camera, size, volume),
+            size,
+        }
+    }
+
+    /// The rays along x and y of a launch, each of which has a pixel in every plane.
+    pub fn size(&self) -> ImageSize {
+        match self {
+            Self::Camera { size, .. } => *size,
+        }
+    }
+}
+
+impl Group for &RaySource {
+    fn add_to(self, args: Args) -> Args {
+        match self {
+            RaySource::Camera { grid, .. } => args.value("rays", grid),
+        }
+    }
+}
+
+fn float4(v: DVec3) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, 0.0]
+}
+
+/// A quantity that is linear over the image: its value at pixel (0,0)'s centre and its change per
+/// column and per row.
+struct Linear {
+    at_first: DVec3,
+    per_column: DVec3,
+    per_row: DVec3,
+}
+
+impl Linear {
+    fn map(&self, m: DMat3) -> Self {
+        Self {
+            at_first: m * self.at_first,
+            per_column: m * self.per_column,
+            per_row: m * self.per_row,
+        }
+    }
+
+    fn float4s(&self) -> [[f32; 4]; 3] {
+        [self.at_first, self.per_column, self.per_row].map(float4)
+    }
+
+    /// What [`Self::float4s`] leaves out.
+    fn low_float4s(&self) -> [[f32; 4]; 3] {
+        [self.at_first, self.per_column, self.per_row].map(|v| {
+            let high = v.to_array().map(|c| f64::from(c as f32));
+            float4(v - DVec3::from_array(high))
+        })
+    }
+}
+
+/// The rays of every pixel. They start on a plane that faces the eye, just short of the volume's
+/// bounding sphere (at the eye when that lies inside it), so that index coordinates stay small
+/// however far the eye is.
+fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume) -> RayGrid {
+    let (center_world, radius_mm) = volume.bounding_sphere();
+    // A little before the sphere: a ray through a corner that touches it must still enter by a face.
+    let base_mm =
+        ((center_world - camera.eye_world()).dot(camera.forward()) - 1.001 * radius_mm).max(0.0);
+    let index_from_world: DAffine3 = volume.geometry().index_from_world();
+
+    let pixel_px = 2.0 / f64::from(size.height());
+    let first_u = (1.0 - f64::from(size.width())) / f64::from(size.height());
+    let first_v = (f64::from(size.height()) - 1.0) / f64::from(size.height());
+    let across = |half_height: f64| Linear {
+        at_first: (camera.right() * first_u + camera.up() * first_v) * half_height,
+        per_column: camera.right() * (pixel_px * half_height),
+        per_row: camera.up() * (-pixel_px * half_height),
+    };
+    let base_world = camera.eye_world() + camera.forward() * base_mm;
+    let (origin, mut dir) = match camera.lens() {
+        Lens::Perspective { fov_deg } => {
+            let tangent = (fov_deg.to_radians() / 2.0).tan();
+            (across(tangent * base_mm), across(tangent))
+        }
+        Lens::Orthographic { height_mm } => (across(height_mm / 2.0), across(0.0)),
+    };
+    dir.at_first += camera.forward();
+
+    let across_index = dir.map(index_from_world.matrix3);
+    let (dir_index, dir_index_low) = (across_index.float4s(), across_index.low_float4s());
+    let dir_world = dir.float4s();
+    let mut origin_index = origin.map(index_from_world.matrix3);
+    origin_index.at_first += index_from_world.transform_point3(base_world);
+    let (origin, origin_low) = (origin_index.float4s(), origin_index.low_float4s());
+    RayGrid {
+        origin: origin[0],
+        origin_dx: origin[1],
+        origin_dy: origin[2],
+        origin_low: origin_low[0],
+        origin_dx_low: origin_low[1],
+        origin_dy_low: origin_low[2],
+        dir_index: dir_index[0],
+        dir_index_dx: dir_index[1],
+        dir_index_dy: dir_index[2],
+        dir_index_low: dir_index_low[0],
+        dir_index_dx_low: dir_index_low[1],
+        dir_index_dy_low: dir_index_low[2],
+        dir_world: dir_world[0],
+        dir_world_dx: dir_world[1],
+        dir_world_dy: dir_world[2],
+        base_mm: base_mm as f32,
+        width: size.width(),
+        height: size.height(),
+        pad: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extent::Dims;
+    use crate::volume::{Geometry, NonFinite, Rescale, Voxels};
+
+    fn oblique_volume() -> Volume {
+        let direction = DMat3::from_cols(
+            DVec3::new(0.6, 0.8, 0.0),
+            DVec3::new(-0.8, 0.6, 0.0),
+            DVec3::NEG_Z,
+        );
+        let geometry = Geometry::new(
+            DVec3::new(10.0, -20.0, 5.0),
+            direction,
+            DVec3::new(0.5, 1.0, 3.0),
+        )
+        .unwrap();
+        let voxels = Voxels::from(vec![0u8; 10 * 12 * 8]);
+        Volume::new(
+            Dims::new([10, 12, 8]).unwrap(),
+            voxels,
+            geometry,
+            Rescale::IDENTITY,
+            NonFinite::Refuse,
+        )
+        .unwrap()
+    }
+
+    /// Largest distance, in voxels, of the device's rays from the camera's own in double
+    /// precision, at the volume's centre depth.
+    fn ray_error_voxels(camera: &Camera, size: ImageSize, volume: &Volume, shift_px: f64) -> f64 {
+        let grid = ray_grid(camera, size, volume);
+        let index_from_world = volume.geometry().index_from_world();
+        let xyz = |v: [f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+        let (center, _) = volume.bounding_sphere();
+        let mut worst: f64 = 0.0;
+        for (i, j) in [(0, 0), (63, 0), (0, 31), (63, 31), (31, 17)] {
+            let (x, y) = (f64::from(i), f64::from(j));
+            let along = |v: [f32; 4], dx, dy| xyz(v) + xyz(dx) * x + xyz(dy) * y;
+            let origin = along(grid.origin, grid.origin_dx, grid.origin_dy)
+                + along(grid.origin_low, grid.origin_dx_low, grid.origin_dy_low);
+            let dir_world = along(grid.dir_world, grid.dir_world_dx, grid.dir_world_dy);
+            let dir_index = along(grid.dir_index, grid.dir_index_dx, grid.dir_index_dy)
+                + along(
+                    grid.dir_index_low,
+                    grid.dir_index_dx_low,
+                    grid.dir_index_dy_low,
+                );
+            let dir = dir_index / dir_world.length();
+            let ray = camera.ray(size, x + 0.5 + shift_px, y + 0.5);
+            let t_mm = (center - ray.origin_world).dot(ray.dir_world);
+            let exact = index_from_world.transform_point3(ray.origin_world + ray.dir_world * t_mm);
+            // From the base plane in single precision's own terms: t − base cancels, so take the
+            // nearest point of the device's ray instead of the point at t.
+            let near = origin + dir * (exact - origin).dot(dir) / dir.length_squared();
+            worst = worst.max(near.distance(exact));
+            // The ray starts where base_mm says, as exactly as that number holds a far distance.
+            let base_mm = f64::from(grid.base_mm) * dir_world.length();
+            let starts_at = |t_mm: f64| {
+                let p_world = ray.origin_world + ray.dir_world * t_mm;
+                let p_index = index_from_world.transform_point3(p_world);
+                p_index.distance(origin) < 1e-4 + 1e-6 * base_mm
+            };
+            assert!(shift_px != 0.0 || starts_at(base_mm));
+            assert!(!starts_at(base_mm * 1.001 + 0.001));
+        }
+        worst
+    }
+
+    #[test]
+    fn device_rays_are_the_cameras_rays() {
+        let size = ImageSize::new(64, 32).unwrap();
+        let volume = oblique_volume();
+        let (center, radius_mm) = volume.bounding_sphere();
+        let near = center + DVec3::new(3.0, -4.0, 2.0).normalize() * (3.0 * radius_mm);
+        let far = center + DVec3::new(3.0, -4.0, 2.0).normalize() * (1e5 * radius_mm);
+        for (eye, lens) in [
+            (near, Lens::Perspective { fov_deg: 40.0 }),
+            (center, Lens::Perspective { fov_deg: 100.0 }),
+            (far, Lens::Perspective { fov_deg: 0.001 }),
+            (near, Lens::Orthographic { height_mm: 30.0 }),
+            (far, Lens::Orthographic { height_mm: 30.0 }),
+        ] {
+            let target = if eye == center {
+                center + DVec3::X
+            } else {
+                center
+            };
+            let camera = Camera::look_at(eye, target, DVec3::Z, lens).unwrap();
+            let error = ray_error_voxels(&camera, size, &volume, 0.0);
+            assert!(error < 1e-9, "{lens:?}: {error}");
+            // The check sees a millionth of a pixel.
+            if eye != center {
+                assert!(
+                    ray_error_voxels(&camera, size, &volume, 1e-6) > 1e-9,
+                    "{lens:?}"
+                );
+            }
+        }
+    }
+}

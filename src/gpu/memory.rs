@@ -132,6 +132,11 @@ impl<T: Element> Buffer<T> {
         })
     }
 
+    /// How many elements it holds.
+    pub fn count(&self) -> usize {
+        self.len
+    }
+
     /// Waits for what was launched before and copies the elements back.
     ///
     /// # Errors

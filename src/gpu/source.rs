@@ -65,7 +65,6 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/window_value.cl",
     "test/abi.cl",
     "test/absorption.cl",
-    "test/aimed_rays.cl",
     "test/clip.cl",
     "test/color.cl",
     "test/field.cl",

@@ -1,18 +1,16 @@
-//! `kernels/test/aimed_rays.cl`: first crossings of rays that are given one by one, for judging the
-//! cast apart from cameras.
+//! First crossings of rays that are given one by one.
 
 use crate::error::Result;
-use crate::extent::ImageSize;
-use crate::frame::{Certificate, Kind};
-use crate::gpu::{Args, Buffer, Device, Timings};
+use crate::frame::{Certificate, Kind, Layer, Plane};
+use crate::gpu::{Buffer, Device, Timings};
 use crate::octree::Octree;
 use crate::scene::{Refine, Sampling};
 use crate::volume::Volume;
 
 use super::abi::{KernelEnum, Lanes, StoredIso, SurfaceCast, Variant};
 use super::occupancy::{Criterion, Occupancy};
-use super::passes::Passes;
-use super::resources::HeldVolume;
+use super::passes::{CastInputs, Passes, Run, exact_surface};
+use super::resources::{DeviceClip, DeviceLayers, HeldVolume, IndexRay, RaySource};
 
 /// The first crossing of one ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +23,6 @@ pub struct FirstCrossing {
     pub certificate: Certificate,
 }
 
-/// Rays a row of the launch.
-const ROW: u32 = 4096;
-
 /// Casts rays on a device; builds each variant once.
 pub struct RayCaster<'a> {
     device: &'a Device,
@@ -36,7 +31,7 @@ pub struct RayCaster<'a> {
 }
 
 impl<'a> RayCaster<'a> {
-    /// `lanes` rays side by side; `None`: [`Lanes::of`] the device.
+    /// A caster whose work-items follow `lanes` rays side by side; `None`: [`Lanes::of`] the device.
     pub fn new(device: &'a Device, lanes: Option<Lanes>) -> Self {
         Self {
             device,
@@ -45,18 +40,18 @@ impl<'a> RayCaster<'a> {
         }
     }
 
-    /// The first change of Φ ≥ `iso` along each ray, given by its origin and direction in index
-    /// space; `iso` is physical.
+    /// The first change of Φ ≥ `iso` along each ray, as the exact surface's cast finds it for a picture;
+    /// `iso` is physical. Rays need not run together.
     ///
     /// # Errors
-    /// The device fails or has no room.
+    /// The device fails or has no room; no rays.
     pub fn cast(
         &mut self,
         volume: &Volume,
         octree: &Octree,
         iso: f64,
         caps: bool,
-        rays: &[([f32; 3], [f32; 3])],
+        rays: &[IndexRay],
     ) -> Result<Vec<FirstCrossing>> {
         let (device, sampling) = (self.device, Sampling::default());
         let mut held = HeldVolume::default();
@@ -64,58 +59,55 @@ impl<'a> RayCaster<'a> {
         let iso = StoredIso::exactly(volume.rescale(), iso);
         let criterion = Criterion::Iso(iso);
         let occupancy = Occupancy::upload(device, volume, octree, &sampling, criterion)?;
-        let points = |of: fn(&([f32; 3], [f32; 3])) -> [f32; 3]| {
-            let padded = rays.iter().map(of).map(|[x, y, z]| [x, y, z, 0.0]);
-            Buffer::upload(device, "rays", &padded.collect::<Vec<[f32; 4]>>())
-        };
-        let (origins, dirs) = (points(|ray| ray.0)?, points(|ray| ray.1)?);
-        let mut hit = Buffer::<f32>::new(device, "hits", rays.len())?;
-        let mut kind = Buffer::<u32>::new(device, "kinds", rays.len())?;
-        let mut certificate = Buffer::<u32>::new(device, "certificates", rays.len())?;
-        let count = rays.len() as u32;
-        let size = ImageSize::new(ROW.min(count), count.div_ceil(ROW))?;
-        let args = Args::new()
-            .with(voxels)
-            .read("node_class", &occupancy.node_class)
-            .read("levels", &on_device.levels)
-            .read("cells", &occupancy.cells)
-            .value("volume", &on_device.grid)
-            .value("cast", &surface_cast(iso, caps, &sampling))
-            .value("count", &count)
-            .value("width", &size.width())
-            .read("origins", &origins)
-            .read("dirs", &dirs)
-            .write("hit", &mut hit)
-            .write("kind", &mut kind)
-            .write("certificate", &mut certificate);
-        self.launch(
-            Variant::of(volume, octree, &sampling, self.lanes),
-            args,
-            size,
-        )?;
-        let (hit, kind) = (hit.download(device)?, kind.download(device)?);
-        let certificate = certificate.download(device)?;
-        let found = hit.into_iter().zip(kind).zip(certificate);
-        Ok(found
-            .map(|((t, kind), certificate)| FirstCrossing {
-                t,
-                kind: kind_of(kind),
-                certificate: certificate_of(certificate),
-            })
-            .collect())
-    }
-
-    fn launch(&mut self, variant: Variant, args: Args, size: ImageSize) -> Result<()> {
-        let lanes = variant.lanes;
-        let defines = variant.defines().with("LANES", lanes);
-        let defines = defines.with("CERTIFICATE", 1);
-        let tile = [lanes.get() as usize, 1];
-        let pass = self.passes.get("test", "aimed_rays", defines, tile);
+        let world_from_index = volume.geometry().world_from_index();
+        let clip = DeviceClip::upload(device, &[], world_from_index)?;
+        let rays = RaySource::of_rays(device, rays)?;
+        let mut layers = DeviceLayers::default();
+        layers.allocate(device, &rays, &[Layer::Kind, Layer::Certificate])?;
         let mut timings = Timings::default();
-        timings.add(pass.launch(self.device, args, size, Some([1, 1]))?);
-        timings.finish(self.device)?;
-        Ok(())
+        let mut run = Run {
+            device,
+            passes: &mut self.passes,
+            timings: &mut timings,
+            rays,
+            work_group: Some([1, 1]),
+            variant: Variant::of(volume, octree, &sampling, self.lanes),
+            voxels,
+        };
+        let inputs = CastInputs {
+            volume: on_device,
+            occupancy: &occupancy,
+            clip: &clip,
+        };
+        let cast = surface_cast(iso, caps, &sampling);
+        let mut hit = run.plane("hits", f32::INFINITY)?;
+        exact_surface(&mut run, inputs, &cast, &mut hit, &mut layers)?;
+        timings.finish(device)?;
+        found(device, &hit, &layers)
     }
+}
+
+fn found(
+    device: &Device,
+    hit: &Buffer<f32>,
+    layers: &DeviceLayers,
+) -> Result<Vec<FirstCrossing>> {
+    let hit = hit.download(device)?;
+    let counts = |layer| -> Result<Vec<u32>> {
+        Ok(match layers.download(device, layer)? {
+            Some(Plane::Counts(counts)) => counts,
+            _ => Vec::new(),
+        })
+    };
+    let (kind, certificate) = (counts(Layer::Kind)?, counts(Layer::Certificate)?);
+    let found = hit.into_iter().zip(kind).zip(certificate);
+    Ok(found
+        .map(|((t, kind), certificate)| FirstCrossing {
+            t,
+            kind: kind_of(kind),
+            certificate: certificate_of(certificate),
+        })
+        .collect())
 }
 
 fn surface_cast(iso: StoredIso, caps: bool, sampling: &Sampling) -> SurfaceCast {

@@ -4,7 +4,7 @@ use angioray::frame::{Certificate, Kind};
 use angioray::lab::bench::aimed::{Aim, AimedRay, Report, Target, answers, run, target};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
-use angioray::render::{FirstCrossing, RayCaster};
+use angioray::render::{FirstCrossing, IndexRay, RayCaster};
 
 use crate::common;
 use crate::mutant::{CAUGHT, assert_caught, is_mutant};
@@ -275,7 +275,16 @@ fn hostile_rays_end() {
         numbers[(state >> 40) as usize % numbers.len()]
     };
     let rays: Vec<_> = (0..200_000)
-        .map(|_| ([any(), any(), any()], [any(), any(), any()]))
+        .map(|n| {
+            let (origin, dir) = ([any(), any(), any()], [any(), any(), any()]);
+            let whole = IndexRay::forward(origin, dir);
+            let part = [any().abs(), any()];
+            if n % 2 == 0 {
+                whole
+            } else {
+                IndexRay { t: part, ..whole }
+            }
+        })
         .collect();
     let mut caster = RayCaster::new(&device, None);
     let mut hits = 0;

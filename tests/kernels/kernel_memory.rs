@@ -10,7 +10,7 @@ use angioray::frame::Kind;
 use angioray::lab::bench::aimed::{rays, target};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
-use angioray::render::RayCaster;
+use angioray::render::{IndexRay, RayCaster};
 
 /// Says to a process of this program that oclgrind watches it.
 const UNDER: &str = "ANGIORAY_TEST_UNDER_OCLGRIND";
@@ -266,10 +266,17 @@ fn aimed_rays_under_oclgrind() {
         let target = target(7, n).unwrap();
         let octree = Octree::build(&target.volume, Leaf::new(4).unwrap(), &Silent).unwrap();
         let aimed = rays(&target, 7 + u64::from(n), 100);
-        let mut given: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
+        let mut given: Vec<_> = aimed
+            .iter()
+            .map(|ray| IndexRay::forward(ray.origin, ray.dir))
+            .collect();
         given.extend((0..81).map(|i| {
             let at = |k: usize| hostile[(i * k + i / 9 + k) % hostile.len()];
-            ([at(1), at(2), at(5)], [at(3), at(7), at(11)])
+            IndexRay {
+                origin: [at(1), at(2), at(5)],
+                dir: [at(3), at(7), at(11)],
+                t: [at(4), at(13)],
+            }
         }));
         let found = caster.cast(&target.volume, &octree, target.iso, target.caps, &given);
         hits += found
@@ -289,9 +296,9 @@ fn aimed_rays_stay_within_their_buffers() {
     let report = under.test("kernel_memory::aimed_rays_under_oclgrind");
     assert!(report.is_empty(), "{report}");
     let under = under.with_broken(
-        "test/aimed_rays.cl",
-        "SCATTER(there, hit, i, t);",
-        "SCATTER(there, hit, i + 1, t);",
+        "pass/exact_surface.cl",
+        "SCATTER(pixels.inside, hit_mm, pixels.index, t);",
+        "SCATTER(pixels.inside, hit_mm, pixels.index + 1, t);",
     );
     let report = under.test("kernel_memory::aimed_rays_under_oclgrind");
     assert!(

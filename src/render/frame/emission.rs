@@ -21,7 +21,7 @@ pub fn emission(
 ) -> Result<Planes> {
     check_homogeneity(emission)?;
     let mut layers = DeviceLayers::default();
-    layers.allocate(run.device, run.rays.size(), &layers_written(view))?;
+    layers.allocate(run.device, &run.rays, &layers_written(view))?;
 
     let (quadrature, shaded) = (emission.quadrature, emission.phong.is_some());
     let with_values = layers.has(Layer::Value);
@@ -41,7 +41,7 @@ pub fn emission(
         shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
         shaded,
     };
-    let mut color = run.plane("colour plane")?;
+    let mut color = run.plane("colour plane", [0.0; 4])?;
     if quadrature.is_stepped() {
         cast_emission(run, quadrature.method, &inputs, &mut color, &mut layers)?;
     } else {

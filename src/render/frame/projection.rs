@@ -20,7 +20,7 @@ pub fn projection(
     floor: Floor,
 ) -> Result<Planes> {
     let mut layers = DeviceLayers::default();
-    layers.allocate(run.device, run.rays.size(), &layers_written(view))?;
+    layers.allocate(run.device, &run.rays, &layers_written(view))?;
 
     let (which, threshold) = match of {
         Projection::Maximum | Projection::Minimum => (ProjectionLoop::Extremum, 0.0),
@@ -46,7 +46,7 @@ pub fn projection(
     };
     project(run, which, view.inputs, &cast, &mut layers)?;
 
-    let mut color = run.plane("colour plane")?;
+    let mut color = run.plane("colour plane", [0.0; 4])?;
     let ends = stored_window(view.volume.rescale(), window);
     window_value(run, ends, &layers, &mut color)?;
     Ok(Planes {

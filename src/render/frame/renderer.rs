@@ -152,6 +152,28 @@ impl<'a> Renderer<'a> {
     /// The device fails or has no room, cannot hold the voxels as the sampling wants them, or the
     /// step is too small to count samples.
     pub fn render(&mut self, scene: &Scene, wanted: Wanted) -> Result<Rendering> {
+        self.render_rays(scene, wanted, None)
+    }
+
+    /// Casts some pixels of a scene, counted row by row: the frame's others are as if their rays met nothing.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; a pixel outside the picture; no pixels.
+    pub fn render_pixels(
+        &mut self,
+        scene: &Scene,
+        wanted: Wanted,
+        pixels: &[u32],
+    ) -> Result<Rendering> {
+        self.render_rays(scene, wanted, Some(pixels))
+    }
+
+    fn render_rays(
+        &mut self,
+        scene: &Scene,
+        wanted: Wanted,
+        pixels: Option<&[u32]>,
+    ) -> Result<Rendering> {
         self.check_sampling(scene)?;
         let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree);
         check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
@@ -165,7 +187,7 @@ impl<'a> Renderer<'a> {
         let Launched {
             planes,
             classify_ms,
-        } = self.launch(scene, wanted, &mut timings)?;
+        } = self.launch(scene, wanted, pixels, &mut timings)?;
         let build_ms = timings.build(self.device)?;
         let (passes, render_ms) = timings.finish(self.device)?;
 
@@ -222,7 +244,13 @@ impl<'a> Renderer<'a> {
     }
 
     /// Puts the launches of a picture in order, after what they read is uploaded.
-    fn launch(&mut self, scene: &Scene, wanted: Wanted, timings: &mut Timings) -> Result<Launched> {
+    fn launch(
+        &mut self,
+        scene: &Scene,
+        wanted: Wanted,
+        pixels: Option<&[u32]>,
+        timings: &mut Timings,
+    ) -> Result<Launched> {
         let (device, volume, octree) = (self.device, self.volume, self.octree);
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, volume, octree);
@@ -240,11 +268,16 @@ impl<'a> Renderer<'a> {
         let (on_device, voxels) =
             self.held
                 .upload(device, volume, octree, scene.sampling.voxels)?;
+        let (camera, size) = (&scene.camera, scene.size);
+        let rays = match pixels {
+            Some(pixels) => RaySource::of_pixels(device, camera, size, volume, pixels)?,
+            None => RaySource::of_camera(camera, size, volume),
+        };
         let mut run = Run {
             device,
             passes: &mut self.passes,
             timings,
-            rays: RaySource::of_camera(&scene.camera, scene.size, volume),
+            rays,
             work_group: self.work_group,
             variant: Variant::of(volume, octree, &scene.sampling, self.lanes),
             voxels,
@@ -263,7 +296,7 @@ impl<'a> Renderer<'a> {
         };
         let mut planes = picture(&mut run, &view)?;
         if wanted.display {
-            let mut display = run.plane("display plane")?;
+            let mut display = run.plane("display plane", [0.0; 4])?;
             tone_curve(&mut run, &tone(&scene.tone), &planes.color, &mut display)?;
             planes.display = Some(display);
         }

@@ -52,7 +52,7 @@ impl Renderer<'_> {
             voxels,
         };
         let step_mm = step_mm(&scene.sampling, volume) as f32;
-        let (mut means, mut counts) = (run.plane("means")?, run.plane("counts")?);
+        let (mut means, mut counts) = (run.plane("means", 0.0)?, run.plane("counts", 0)?);
         sample_field(&mut run, on_device, step_mm, &mut means, &mut counts)?;
         let (_, ms) = timings.finish(device)?;
         let physical = |stored: f32| volume.rescale().physical(f64::from(stored));

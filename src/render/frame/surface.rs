@@ -27,11 +27,10 @@ pub fn surface(run: &mut Run, view: &View, iso: StoredIso, surface: &Surface) ->
     let shaded = surface.phong.is_some();
     let method = view.scene.sampling.method;
     let mut layers = DeviceLayers::default();
-    let size = run.rays.size();
-    layers.allocate(run.device, size, &layers_written(view, method))?;
+    layers.allocate(run.device, &run.rays, &layers_written(view, method))?;
 
     let cast = surface_cast(view, iso, surface);
-    let mut hit_mm = run.plane("hit plane")?;
+    let mut hit_mm = run.plane("hit plane", f32::INFINITY)?;
     let find = match method {
         SamplingMethod::Fixed => cast_surface,
         SamplingMethod::Exact => exact_surface,
@@ -39,12 +38,12 @@ pub fn surface(run: &mut Run, view: &View, iso: StoredIso, surface: &Surface) ->
     find(run, view.inputs, &cast, &mut hit_mm, &mut layers)?;
 
     if view.wanted.has(Layer::Normal) || shaded {
-        layers.allocate(run.device, size, &[Layer::Normal])?;
+        layers.allocate(run.device, &run.rays, &[Layer::Normal])?;
         surface_normal(run, view.inputs, view.gradient, &hit_mm, &mut layers)?;
     }
 
     let light = shading(surface.color, surface.phong, view.scene.light);
-    let mut color = run.plane("colour plane")?;
+    let mut color = run.plane("colour plane", [0.0; 4])?;
     shade_surface(run, &light, shaded, &layers, &mut color)?;
     Ok(Planes {
         color,

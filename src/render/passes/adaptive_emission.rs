@@ -16,5 +16,5 @@ pub fn adaptive_emission(
 ) -> Result<()> {
     let defines = inputs.defines(run, layers);
     let args = inputs.args(run, color, layers);
-    run.launch("adaptive_emission", defines, args)
+    run.cast("adaptive_emission", defines, args)
 }

@@ -22,5 +22,5 @@ pub fn cast_emission(
         .with("QUADRATURE", method.number())
         .with("HOMOGENEOUS", u32::from(inputs.node_average.is_some()));
     let args = inputs.args(run, color, layers);
-    run.launch("cast_emission", defines, args)
+    run.cast("cast_emission", defines, args)
 }

@@ -33,5 +33,5 @@ pub fn cast_maximum(
             Layer::Steps,
             Layer::Nodes,
         ]));
-    run.launch("cast_maximum", defines, args)
+    run.cast("cast_maximum", defines, args)
 }

@@ -34,5 +34,5 @@ pub fn cast_surface(
             Layer::Steps,
             Layer::Nodes,
         ]));
-    run.launch("cast_surface", defines, args)
+    run.cast("cast_surface", defines, args)
 }

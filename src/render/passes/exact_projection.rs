@@ -32,5 +32,5 @@ pub fn exact_projection(
             Layer::Steps,
             Layer::Nodes,
         ]));
-    run.launch("exact_projection", defines, args)
+    run.cast("exact_projection", defines, args)
 }

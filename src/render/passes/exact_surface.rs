@@ -36,5 +36,5 @@ pub fn exact_surface(
             Layer::Steps,
             Layer::Nodes,
         ]));
-    run.launch("exact_surface", defines, args)
+    run.cast("exact_surface", defines, args)
 }

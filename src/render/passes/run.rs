@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::extent::ImageSize;
 use crate::gpu::{Args, Buffer, Defines, Device, Element, Pass, Timings};
-use crate::render::abi::Variant;
+use crate::render::abi::{KernelEnum, RayGrid, Variant};
 use crate::render::resources::{DeviceVoxels, RaySource};
 
 /// The passes of a renderer: each variant is built once, before its first launch.
@@ -13,16 +14,10 @@ use crate::render::resources::{DeviceVoxels, RaySource};
 pub struct Passes(HashMap<(&'static str, Defines), Arc<Pass>>);
 
 impl Passes {
-    /// The pass `name` of `kernels/<folder>` with these constants; a work-item takes a `tile` of pixels.
-    pub fn get(
-        &mut self,
-        folder: &'static str,
-        name: &'static str,
-        defines: Defines,
-        tile: [usize; 2],
-    ) -> &Arc<Pass> {
+    /// The pass `name` of `kernels/pass` with these constants; a work-item takes a `tile` of pixels.
+    pub fn get(&mut self, name: &'static str, defines: Defines, tile: [usize; 2]) -> &Arc<Pass> {
         let pass = self.0.entry((name, defines));
-        pass.or_insert_with_key(|(name, defines)| Pass::new(folder, name, defines.clone(), tile))
+        pass.or_insert_with_key(|(name, defines)| Pass::new("pass", name, defines.clone(), tile))
     }
 }
 
@@ -51,20 +46,59 @@ impl Run<'_> {
         self.variant.defines().with("LANES", lanes)
     }
 
-    /// Puts a launch of the pass `name` at the end of the frame's, a ray for every pixel.
+    /// Puts a launch of a cast at the end of the frame's: the pass `name`, for every ray of the source.
     ///
     /// # Errors
     /// The arguments are not those of the pass's first launch.
-    pub fn launch(&mut self, name: &'static str, defines: Defines, args: Args) -> Result<()> {
-        let tile = self.variant.lanes.tile();
-        let pass = self.passes.get("pass", name, defines, tile);
-        let launch = pass.launch(self.device, args, self.rays.size(), self.work_group)?;
+    pub fn cast(&mut self, name: &'static str, defines: Defines, args: Args) -> Result<()> {
+        let (size, tile) = self.rays.launch_size(self.variant.lanes)?;
+        let defines = defines.with("RAYS", self.rays.kind().number());
+        self.launch(name, defines, args, size, tile)
+    }
+
+    /// Begins the arguments of a screen pass: one that runs over all pixels of the picture, whichever have
+    /// rays.
+    ///
+    /// # Errors
+    /// The rays belong to no picture.
+    pub fn screen_args(&self) -> Result<Args> {
+        let (grid, _) = self.picture()?;
+        Ok(Args::new().value("rays", grid))
+    }
+
+    /// Puts a launch of a screen pass at the end of the frame's.
+    ///
+    /// # Errors
+    /// As [`Run::cast`]; the rays belong to no picture.
+    pub fn screen(&mut self, name: &'static str, defines: Defines, args: Args) -> Result<()> {
+        let (_, size) = self.picture()?;
+        self.launch(name, defines, args, size, self.variant.lanes.tile())
+    }
+
+    fn picture(&self) -> Result<(&RayGrid, ImageSize)> {
+        let none = || Error::failed("rays that are given one by one make no picture");
+        self.rays.picture().ok_or_else(none)
+    }
+
+    fn launch(
+        &mut self,
+        name: &'static str,
+        defines: Defines,
+        args: Args,
+        size: ImageSize,
+        tile: [usize; 2],
+    ) -> Result<()> {
+        let pass = self.passes.get(name, defines, tile);
+        let launch = pass.launch(self.device, args, size, self.work_group)?;
         self.timings.add(launch);
         Ok(())
     }
 
-    /// Room for one plane of the frame; `what` names it in errors.
-    pub fn plane<T: Element>(&self, what: &str) -> Result<Buffer<T>> {
-        Buffer::new(self.device, what, self.rays.size().pixels())
+    /// Room for one plane of the frame; `what` names it in errors. Where no ray writes it, it is `empty`.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn plane<T: Element>(&self, what: &str, empty: T) -> Result<Buffer<T>> {
+        self.rays.plane(self.device, what, empty)
     }
 }

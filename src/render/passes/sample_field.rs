@@ -21,5 +21,5 @@ pub fn sample_field(
         .value("step_mm", &step_mm)
         .write("value", means)
         .write("steps", counts);
-    run.launch("sample_field", run.defines(), args)
+    run.cast("sample_field", run.defines(), args)
 }

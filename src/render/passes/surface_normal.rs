@@ -24,5 +24,5 @@ pub fn surface_normal(
         .read("hit_mm", hit_mm)
         .with(layers.reading(&[Layer::Kind]))
         .with(layers.writing(&[Layer::Normal]));
-    run.launch("surface_normal", defines, args)
+    run.cast("surface_normal", defines, args)
 }

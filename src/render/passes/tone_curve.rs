@@ -1,7 +1,7 @@
 //! `kernels/pass/tone_curve.cl`
 
 use crate::error::Result;
-use crate::gpu::{Args, Buffer};
+use crate::gpu::Buffer;
 use crate::render::abi::Tone;
 
 use super::run::Run;
@@ -13,10 +13,10 @@ pub fn tone_curve(
     color: &Buffer<[f32; 4]>,
     display: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let args = Args::new()
-        .with(&run.rays)
+    let args = run
+        .screen_args()?
         .value("tone", tone)
         .read("color", color)
         .write("display", display);
-    run.launch("tone_curve", run.defines(), args)
+    run.screen("tone_curve", run.defines(), args)
 }

@@ -1,9 +1,10 @@
 //! The planes of a picture's layers on the device, as a map by layer.
 
 use crate::error::Result;
-use crate::extent::ImageSize;
 use crate::frame::{FillValue, Layer, Plane};
 use crate::gpu::{Args, Buffer, Device, Group};
+
+use super::rays::RaySource;
 
 /// The plane of a layer on the device.
 enum DevicePlane {
@@ -14,12 +15,14 @@ enum DevicePlane {
 }
 
 impl DevicePlane {
-    fn new(device: &Device, name: &str, entry: FillValue, pixels: usize) -> Result<Self> {
+    fn new(device: &Device, rays: &RaySource, name: &str, empty: FillValue) -> Result<Self> {
         let what = format!("{name} plane");
-        Ok(match entry {
-            FillValue::Scalar(_) => Self::Scalars(Buffer::new(device, &what, pixels)?),
-            FillValue::Vector(_) => Self::Vectors(Buffer::new(device, &what, pixels)?),
-            FillValue::Count(_) => Self::Counts(Buffer::new(device, &what, pixels)?),
+        Ok(match empty {
+            FillValue::Scalar(empty) => Self::Scalars(rays.plane(device, &what, empty)?),
+            FillValue::Vector([x, y, z]) => {
+                Self::Vectors(rays.plane(device, &what, [x, y, z, 0.0])?)
+            }
+            FillValue::Count(empty) => Self::Counts(rays.plane(device, &what, empty)?),
         })
     }
 
@@ -58,14 +61,15 @@ impl DeviceLayers {
         }
     }
 
-    /// Makes room for the planes of these layers; for those without planes none.
+    /// Makes room for the planes of these layers; for those without planes none. Where no ray writes them, they
+    /// hold their fill value.
     ///
     /// # Errors
     /// The device has no room.
-    pub fn allocate(&mut self, device: &Device, size: ImageSize, layers: &[Layer]) -> Result<()> {
+    pub fn allocate(&mut self, device: &Device, rays: &RaySource, layers: &[Layer]) -> Result<()> {
         for &layer in layers {
-            if let Some(entry) = layer.empty() {
-                let plane = DevicePlane::new(device, layer.name(), entry, size.pixels())?;
+            if let Some(empty) = layer.empty() {
+                let plane = DevicePlane::new(device, rays, layer.name(), empty)?;
                 self.0[layer as usize] = Some(plane);
             }
         }

@@ -18,7 +18,7 @@ pub use directions::{AngleError, Directions};
 pub use gradient::{DeviceDirections, DeviceGradient, GradientFigures, needed_gradients};
 pub use held_volume::HeldVolume;
 pub use layers::DeviceLayers;
-pub use rays::RaySource;
+pub use rays::{IndexRay, RaySource};
 pub use transfer::{Knots, unit_absorption};
 pub use volume::DeviceVolume;
 pub use voxels::DeviceVoxels;

@@ -3,11 +3,32 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::gpu::{Args, Group};
-use crate::render::abi::RayGrid;
+use crate::gpu::{Args, Buffer, Device, Element, Group};
+use crate::memory;
+use crate::render::abi::{Lanes, RayGrid, Rays};
 use crate::scene::{Camera, Lens};
 use crate::volume::Volume;
+
+/// A ray of its own, in index space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IndexRay {
+    /// Its origin.
+    pub origin: [f32; 3],
+    /// Its direction, of any length: t counts its lengths.
+    pub dir: [f32; 3],
+    /// The part of it that is looked at: from `t_min`, not negative, to `t_max`, which may be +∞.
+    pub t: [f32; 2],
+}
+
+impl IndexRay {
+    /// The ray from its origin on.
+    pub fn forward(origin: [f32; 3], dir: [f32; 3]) -> Self {
+        let t = [0.0, f32::INFINITY];
+        Self { origin, dir, t }
+    }
+}
 
 /// Where the rays of a launch come from: which arguments kernels read them from, and how many there are.
 pub enum RaySource {
@@ -18,7 +39,26 @@ pub enum RaySource {
         /// The picture's size.
         size: ImageSize,
     },
+    /// A ray through the centre of each of some pixels.
+    Pixels {
+        /// The rays of all pixels, linear over the picture.
+        grid: RayGrid,
+        /// The picture's size.
+        size: ImageSize,
+        /// The pixels, row by row.
+        listed: Buffer<u32>,
+    },
+    /// Rays that are given one by one, [`IndexRay`]s; they need not run together.
+    Buffers {
+        /// Origins, and in w where the part that is looked at begins.
+        origins: Buffer<[f32; 4]>,
+        /// Directions, and in w where it ends.
+        dirs: Buffer<[f32; 4]>,
+    },
 }
+
+/// Rays in a row of a launch whose rays stand in no picture.
+const ROW: usize = 4096;
 
 impl RaySource {
     /// The rays that a camera sends through a picture of this size.
@@ -29,10 +69,101 @@ impl RaySource {
         }
     }
 
-    /// The rays along x and y of a launch, each of which has a pixel in every plane.
-    pub fn size(&self) -> ImageSize {
+    /// Those of a camera's rays that go through these pixels, counted row by row. Work-items follow
+    /// neighbours together, in whatever order they are listed.
+    ///
+    /// # Errors
+    /// A pixel outside the picture; the device has no room.
+    pub fn of_pixels(
+        device: &Device,
+        camera: &Camera,
+        size: ImageSize,
+        volume: &Volume,
+        pixels: &[u32],
+    ) -> Result<Self> {
+        if let Some(pixel) = pixels.iter().find(|&&pixel| pixel as usize >= size.pixels()) {
+            return Err(Error::usage(format!(
+                "pixel {pixel}: a picture of {size} has {}",
+                size.pixels()
+            )));
+        }
+        let width = size.width();
+        let mut listed = pixels.to_vec();
+        // Tile by tile of 4 × 4, which holds those of 8 lanes too.
+        listed.sort_unstable_by_key(|pixel| {
+            let (i, j) = (pixel % width, pixel / width);
+            (j / 4, i / 4, j, i)
+        });
+        Ok(Self::Pixels {
+            grid: ray_grid(camera, size, volume),
+            size,
+            listed: Buffer::upload(device, "list of pixels", &listed)?,
+        })
+    }
+
+    /// Rays given one by one.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn of_rays(device: &Device, rays: &[IndexRay]) -> Result<Self> {
+        let upload = |four: fn(&IndexRay) -> [f32; 4]| {
+            let fours: Vec<[f32; 4]> = rays.iter().map(four).collect();
+            Buffer::upload(device, "rays", &fours)
+        };
+        Ok(Self::Buffers {
+            origins: upload(|ray| with_w(ray.origin, ray.t[0]))?,
+            dirs: upload(|ray| with_w(ray.dir, ray.t[1]))?,
+        })
+    }
+
+    /// The kind of source that kernels are built for.
+    pub fn kind(&self) -> Rays {
         match self {
-            Self::Camera { size, .. } => *size,
+            Self::Camera { .. } => Rays::Camera,
+            Self::Pixels { .. } => Rays::Pixels,
+            Self::Buffers { .. } => Rays::Buffers,
+        }
+    }
+
+    /// The entries of every plane that these rays write to.
+    pub fn places(&self) -> usize {
+        match self {
+            Self::Camera { size, .. } | Self::Pixels { size, .. } => size.pixels(),
+            Self::Buffers { origins, .. } => origins.count(),
+        }
+    }
+
+    /// Room for one plane; `what` names it in errors. Where no ray writes it, it is `empty`.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn plane<T: Element>(&self, device: &Device, what: &str, empty: T) -> Result<Buffer<T>> {
+        if matches!(self, Self::Pixels { .. }) {
+            let filled = memory::filled(self.places(), empty, "a plane of the picture")?;
+            return Buffer::upload(device, what, &filled);
+        }
+        Buffer::new(device, what, self.places())
+    }
+
+    /// The rays along x and y of a launch, and those of them that a work-item follows, `lanes` in all.
+    ///
+    /// # Errors
+    /// No rays, or more than a launch can have.
+    pub fn launch_size(&self, lanes: Lanes) -> Result<(ImageSize, [usize; 2])> {
+        let count = match self {
+            Self::Camera { size, .. } => return Ok((*size, lanes.tile())),
+            Self::Pixels { listed, .. } => listed.count(),
+            Self::Buffers { origins, .. } => origins.count(),
+        };
+        let rows = ImageSize::new(ROW.min(count) as u32, count.div_ceil(ROW) as u32)?;
+        Ok((rows, [lanes.get() as usize, 1]))
+    }
+
+    /// The rays of all pixels of the picture, and its size; `None`: the rays belong to no picture.
+    pub fn picture(&self) -> Option<(&RayGrid, ImageSize)> {
+        match self {
+            Self::Camera { grid, size } | Self::Pixels { grid, size, .. } => Some((grid, *size)),
+            Self::Buffers { .. } => None,
         }
     }
 }
@@ -41,8 +172,20 @@ impl Group for &RaySource {
     fn add_to(self, args: Args) -> Args {
         match self {
             RaySource::Camera { grid, .. } => args.value("rays", grid),
+            RaySource::Pixels { grid, listed, .. } => args
+                .value("rays", grid)
+                .read("listed", listed)
+                .value("listed_count", &(listed.count() as u32)),
+            RaySource::Buffers { origins, dirs } => args
+                .read("origins", origins)
+                .read("dirs", dirs)
+                .value("ray_count", &(origins.count() as u32)),
         }
     }
+}
+
+fn with_w([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
+    [x, y, z, w]
 }
 
 fn float4(v: DVec3) -> [f32; 4] {

@@ -15,7 +15,7 @@ use crate::frame::{Certificate, Kind};
 use crate::gpu::Device;
 use crate::octree::{Leaf, Octree};
 use crate::progress::{Progress, Silent};
-use crate::render::{FirstCrossing, RayCaster};
+use crate::render::{FirstCrossing, IndexRay, RayCaster};
 use crate::scene::{
     Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
 };
@@ -180,8 +180,9 @@ pub fn answers(
     aimed: &[AimedRay],
 ) -> Result<(Report, Vec<FirstCrossing>)> {
     let octree = Octree::build(&target.volume, Leaf::new(4)?, &Silent)?;
-    let pairs: Vec<_> = aimed.iter().map(|ray| (ray.origin, ray.dir)).collect();
-    let crossings = caster.cast(&target.volume, &octree, target.iso, target.caps, &pairs)?;
+    let forward = aimed.iter().map(|ray| IndexRay::forward(ray.origin, ray.dir));
+    let rays: Vec<IndexRay> = forward.collect();
+    let crossings = caster.cast(&target.volume, &octree, target.iso, target.caps, &rays)?;
     let report = check(target, number, aimed, &crossings)?;
     Ok((report, crossings))
 }

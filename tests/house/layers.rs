@@ -1,7 +1,8 @@
 //! No layer reaches up: every `crate::` path in `src` against ARCHITECTURE.md's table.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use crate::sources::{paths_at, sources};
 
 const GROUND: &[&str] = &[
     "abrupt", "crash", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
@@ -64,48 +65,19 @@ const MAY_USE: &[(&str, &[&[&str]])] = &[
     ),
 ];
 
-fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            rust_files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            found.push(path);
-        }
-    }
-}
-
 /// The top-level modules that a source names by a `crate::` path; macros and re-exports of the
 /// crate's root (`crate::Error`, `crate::with_voxels!`) are not modules.
 fn modules_named(source: &str) -> Vec<String> {
-    let mut named = Vec::new();
-    for (at, _) in source.match_indices("crate::") {
-        if source[..at].ends_with('$') {
-            continue;
-        }
-        let rest = &source[at + "crate::".len()..];
-        if let Some(list) = rest.strip_prefix('{') {
-            let list = list.split('}').next().unwrap();
-            named.extend(
-                list.split(',')
-                    .filter_map(|item| item.split("::").next())
-                    .map(str::to_owned),
-            );
-        } else {
-            let mut names = rest.split("::").map(|part| {
-                let mut words = part.split(|c: char| !(c.is_alphanumeric() || c == '_'));
-                words.next().unwrap()
-            });
-            named.push(match (names.next().unwrap(), names.next()) {
-                ("lab", Some(part)) => format!("lab::{part}"),
-                (module, _) => module.to_owned(),
-            });
-        }
-    }
+    let at = source.match_indices("crate::").map(|(at, _)| at);
+    let at = at.filter(|&at| !source[..at].ends_with('$'));
+    let paths = at.flat_map(|at| paths_at(&source[at..]));
+    let named = paths.filter_map(|path| match &path[1..] {
+        [lab, part, ..] if lab == "lab" => Some(format!("lab::{part}")),
+        [module, ..] => Some(module.clone()),
+        [] => None,
+    });
     named
-        .into_iter()
-        .map(|name| name.trim().to_owned())
-        .filter(|name| MAY_USE.iter().any(|(module, _)| module == name))
+        .filter(|name| name == "lab" || MAY_USE.iter().any(|(module, _)| module == name))
         .collect()
 }
 
@@ -143,16 +115,13 @@ fn module_of(path: &Path) -> Option<String> {
 
 #[test]
 fn no_layer_reaches_up() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    rust_files(&src, &mut files);
     let mut checked = 0;
-    for path in files {
-        let Some(module) = module_of(path.strip_prefix(&src).unwrap()) else {
+    for source in sources("src") {
+        let Some(module) = module_of(source.path.strip_prefix("src").unwrap()) else {
             continue;
         };
-        let found = violations(&module, &fs::read_to_string(&path).unwrap());
-        assert!(found.is_empty(), "{}: {found:?}", path.display());
+        let found = violations(&module, &source.text);
+        assert!(found.is_empty(), "{}: {found:?}", source.path.display());
         checked += 1;
     }
     assert!(checked > 40, "only {checked} files were found");
@@ -175,6 +144,10 @@ fn the_check_sees_a_layer_that_reaches_up() {
     assert_eq!(
         violations("lab::measure", "use crate::lab::bench::Bench;"),
         ["lab::measure uses lab::bench"]
+    );
+    assert_eq!(
+        violations("cli", "use crate::{lab::{measure::Peer, bench}, lab};"),
+        ["cli uses lab"]
     );
     assert_eq!(
         violations("render", "use crate::lab::measure::time;"),

@@ -94,7 +94,7 @@ impl Aimer<'_> {
             Aim::GridLine => self.on_grid_line(),
             Aim::Grazing => self.grazing(),
             Aim::Tangent => self.tangent(),
-            Aim::FromInside => self.from_inside(),
+            Aim::FromInside => self.inside_out(),
         };
         AimedRay {
             aim,
@@ -149,7 +149,7 @@ impl Aimer<'_> {
         self.shifted(at - dir * 40.0, dir)
     }
 
-    fn from_inside(&mut self) -> (DVec3, DVec3) {
+    fn inside_out(&mut self) -> (DVec3, DVec3) {
         let mut origin = self.voxel();
         match self.rng.below(4) {
             0 => {}

@@ -64,11 +64,11 @@ impl<'a> RayCaster<'a> {
         let iso = StoredIso::exactly(volume.rescale(), iso);
         let criterion = Criterion::Iso(iso);
         let occupancy = Occupancy::upload(device, volume, octree, &sampling, criterion)?;
-        let points = |of: fn(&([f32; 3], [f32; 3])) -> [f32; 3]| {
-            let padded = rays.iter().map(of).map(|[x, y, z]| [x, y, z, 0.0]);
-            Buffer::upload(device, "rays", &padded.collect::<Vec<[f32; 4]>>())
-        };
-        let (origins, dirs) = (points(|ray| ray.0)?, points(|ray| ray.1)?);
+        let padded = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        let origins: Vec<[f32; 4]> = rays.iter().map(|ray| padded(ray.0)).collect();
+        let dirs: Vec<[f32; 4]> = rays.iter().map(|ray| padded(ray.1)).collect();
+        let origins = Buffer::upload(device, "rays", &origins)?;
+        let dirs = Buffer::upload(device, "rays", &dirs)?;
         let mut hit = Buffer::<f32>::new(device, "hits", rays.len())?;
         let mut kind = Buffer::<u32>::new(device, "kinds", rays.len())?;
         let mut certificate = Buffer::<u32>::new(device, "certificates", rays.len())?;

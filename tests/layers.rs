@@ -4,7 +4,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const GROUND: &[&str] = &[
-    "abrupt", "crash", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
+    "abrupt",
+    "crash",
+    "error",
+    "extent",
+    "input",
+    "kept",
+    "memory",
+    "number_text",
+    "output",
+    "progress",
+    "stop",
+    "subject",
 ];
 
 /// A module and the modules, beside the ground floor's, that it may use.
@@ -16,15 +27,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("input", &[]),
     ("kept", &[]),
     ("memory", &[]),
+    ("number_text", &[]),
     ("output", &[]),
     ("progress", &[]),
     ("stop", &[]),
+    ("subject", &[]),
     ("volume", &[]),
     ("scene", &[]),
+    ("options", &["scene"]),
     ("frame", &[]),
     ("gpu", &[]),
     ("octree", &["volume"]),
-    ("hardcases", &["volume", "scene"]),
+    ("hardcases", &["volume", "scene", "options"]),
     ("reference", &["volume", "scene", "frame"]),
     ("render", &["volume", "scene", "frame", "gpu", "octree"]),
     ("report", &["frame"]),
@@ -33,6 +47,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "volume",
             "scene",
+            "options",
             "frame",
             "gpu",
             "octree",
@@ -47,6 +62,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "volume",
             "scene",
+            "options",
             "frame",
             "gpu",
             "octree",
@@ -62,6 +78,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "volume",
             "scene",
+            "options",
             "frame",
             "gpu",
             "octree",
@@ -78,6 +95,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "volume",
             "scene",
+            "options",
             "frame",
             "gpu",
             "octree",
@@ -110,6 +128,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "volume",
             "scene",
+            "options",
             "frame",
             "gpu",
             "octree",

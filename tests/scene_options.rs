@@ -1,10 +1,9 @@
 //! Scene options: flags and scene files, alone and together, to a scene and back.
 
 use angioray::extent::{ImageSize, Range};
-use angioray::scene::{
-    Gradient, Lens, Picture, Precomputed, Projection, Resolved, SceneFile, SceneOptions, Subject,
-    Threshold, TransferChoice,
-};
+use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
+use angioray::scene::{Gradient, Lens, Picture, Precomputed, Projection};
+use angioray::subject::Subject;
 use clap::Parser;
 use glam::DVec3;
 
@@ -308,7 +307,7 @@ fn a_flag_wins_over_the_file() {
     assert!(resolved(&merged).scene.camera.eye_world().x < 0.0);
     // What a flag rules out in the file goes with it.
     let mip = flags(&["--mode", "mip"]).over(file(scene));
-    assert_eq!(resolved(&mip).scene.picture.mode(), "mip");
+    assert_eq!(resolved(&mip).scene.picture.mode().name(), "mip");
     let eye = flags(&["--eye", "9,9,9"]).over(file(scene));
     assert_eq!(resolved(&eye).scene.camera.eye_world(), DVec3::splat(9.0));
     let ortho = flags(&["--ortho", "5"]).over(file(scene));
@@ -318,7 +317,7 @@ fn a_flag_wins_over_the_file() {
         let whole = resolved(&flags(line)).options;
         for mode in ["iso", "mip", "lmip", "minip", "mean", "dvr"] {
             let other = flags(&["--mode", mode, "--view", "left"]).over(whole.clone());
-            assert_eq!(resolved(&other).scene.picture.mode(), mode);
+            assert_eq!(resolved(&other).scene.picture.mode().name(), mode);
         }
     }
     // The control: within one source the same is nonsense.

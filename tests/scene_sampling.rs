@@ -1,9 +1,9 @@
 //! Which sampling a scene has: what is asked for, what that implies, and what goes with it.
 
 use angioray::extent::Range;
-use angioray::scene::{
-    Emission, Picture, QuadratureMethod, Resolved, SamplingMethod, SceneOptions, Subject,
-};
+use angioray::options::{Resolved, SceneOptions};
+use angioray::scene::{Emission, Picture, QuadratureMethod, SamplingMethod};
+use angioray::subject::Subject;
 use glam::DVec3;
 
 const SUBJECT: Subject = Subject {
@@ -37,7 +37,7 @@ fn method(text: &str) -> SamplingMethod {
 
 fn quadrature(options: &SceneOptions) -> QuadratureMethod {
     match resolved(options).scene.picture {
-        Picture::Emission(Emission { quadrature, .. }) => quadrature.method,
+        Picture::Emission(Emission { quadrature, .. }) => quadrature.method(),
         other => panic!("{other:?}"),
     }
 }

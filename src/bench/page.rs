@@ -61,7 +61,7 @@ fn facts(bench: &Bench, conduct: Conduct) -> Vec<(String, String)> {
             specimen.volume.dims(),
             specimen.volume.voxels().voxel_type(),
         );
-        let iso = crate::scene::options::concise(specimen.iso);
+        let iso = crate::number_text::concise(specimen.iso);
         format!("{} ({dims} {}, iso {iso})", specimen.name, kind.name())
     });
     let volumes = match bench.specimens.is_empty() {

@@ -7,11 +7,11 @@ use clap::builder::StyledStr;
 use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, Store};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceInfo;
+use crate::number_text::concise;
+use crate::options::group::group;
+use crate::options::text_form::one_or_more;
+use crate::options::{Count, FilePath, Switch, Threshold, VolumeOptions};
 use crate::progress::Progress;
-use crate::scene::options::concise;
-use crate::scene::options::group::group;
-use crate::scene::options::plain::one_or_more;
-use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
 use crate::volume::percentiles;
 
 use super::engine::{DeviceOptions, Engine};

@@ -9,12 +9,12 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::{Device, DeviceInfo};
 use crate::octree::Octree;
+use crate::options::group::group;
+use crate::options::text_form::readable;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
 use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
 use crate::volume::Volume;
 
 use super::load::{Source, ms_since};

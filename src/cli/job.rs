@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::scene::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
+use crate::options::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::volume::files_of;
 
 use super::engine::DeviceOptions;

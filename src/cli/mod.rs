@@ -31,8 +31,8 @@ use clap::error::ErrorKind;
 use clap::{FromArgMatches, Parser, Subcommand};
 
 use crate::error::{Error, Result};
-use crate::scene::Switch;
-use crate::scene::options::group::group;
+use crate::options::Switch;
+use crate::options::group::group;
 use crate::volume;
 
 /// Pictures from angiograms and other sparse scalar volumes, without a window

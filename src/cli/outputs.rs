@@ -7,10 +7,11 @@ use std::str::FromStr;
 use crate::batch::FrameNames;
 use crate::error::{Error, Result};
 use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
+use crate::options::group::group;
+use crate::options::text_form::readable;
+use crate::options::{FilePath, SceneFile};
 use crate::output::{check_folder, check_writable};
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
-use crate::scene::{FilePath, FrameCount, Mode, SceneFile};
+use crate::scene::{FrameCount, Mode};
 
 group! {
     /// The files that a rendering writes.

@@ -7,8 +7,9 @@ use crate::batch::Provenance;
 use crate::error::Result;
 use crate::frame::{self, Frame, Wanted};
 use crate::measure::Counts;
+use crate::options::Resolved;
 use crate::render::GradientFigures;
-use crate::scene::{Resolved, SamplingMethod};
+use crate::scene::SamplingMethod;
 use crate::tolerance::{Choice, Cost, ToleranceStats};
 
 use super::engine::{Engine, Rendered};

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::VERSION;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Format, read_encoding};
-use crate::scene::options::group::group;
-use crate::scene::{FilePath, SceneOptions};
+use crate::options::group::group;
+use crate::options::{FilePath, SceneOptions};
 use crate::volume::files_of;
 
 use super::carried::Carried;

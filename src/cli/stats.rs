@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
 use crate::measure::{Counts, host_peak_bytes};
+use crate::options::SceneOptions;
 use crate::output::write_atomically;
-use crate::scene::SceneOptions;
 use crate::tolerance::ToleranceStats;
 use crate::volume::Volume;
 

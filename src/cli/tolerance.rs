@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::frame::Wanted;
-use crate::scene::{Camera, ErrorBound, SceneOptions};
+use crate::options::{ErrorBound, SceneOptions};
+use crate::scene::Camera;
 use crate::tolerance::{self, Choice, SEED, Task};
 
 use super::engine::Caster;

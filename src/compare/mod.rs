@@ -29,10 +29,12 @@ use crate::frame::{Frame, Wanted};
 use crate::measure::{
     Peer, PeerScene, Readiness, TrueFrame, Truth, family, judge, judged_planes, scale_of,
 };
+use crate::options::{Resolved, SceneOptions, Setting};
 use crate::progress::{Progress, Stage};
 use crate::render::Renderer;
 use crate::report::{self, Gallery, Section};
-use crate::scene::{Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::Scene;
+use crate::subject::Subject;
 use crate::tolerance::{Choice, SEED, Task, ToleranceStats, choose};
 use crate::volume::Volume;
 

@@ -31,7 +31,7 @@ pub fn scenes(case: &HardCase, member: usize, volume: &Volume) -> Vec<HardScene>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SceneOptions;
+    use crate::options::SceneOptions;
 
     #[test]
     fn every_scene_is_a_scene_file_and_has_a_name_of_its_own() {

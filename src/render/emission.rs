@@ -49,7 +49,7 @@ pub fn emission(run: &mut Run, view: &View, emission: &Emission) -> Result<Plane
     if quadrature.is_stepped() {
         cast_emission(
             run,
-            quadrature.method,
+            quadrature.method(),
             phong.is_some(),
             gradient,
             view.uploaded,
@@ -99,7 +99,7 @@ fn transfer_on_device(
     emission: &Emission,
     with_values: bool,
 ) -> Result<DeviceTransfer> {
-    let method = emission.quadrature.method;
+    let method = emission.quadrature.method();
     let plain = Knots::of(&emission.transfer, view.volume);
     let integrates = integrates(method, run.variant.filter);
     let knots = if integrates { plain.smooth() } else { plain };
@@ -136,8 +136,8 @@ fn emission_cast(
         ..
     } = *emission;
     // What a bound on premultiplied light leaves for opacity: all behind may be this bright.
-    let bound = quadrature.bound / emission.phong.map_or(1.0, brightest).max(1.0);
-    let termination = 1.0 - emission.termination;
+    let bound = quadrature.bound() / emission.phong.map_or(1.0, brightest).max(1.0);
+    let termination = 1.0 - emission.termination.get();
     let least_transmission = if quadrature.is_stepped() {
         termination
     } else {
@@ -165,5 +165,5 @@ fn emission_cast(
 
 /// The most light that white reflects.
 fn brightest(phong: Phong) -> f64 {
-    phong.ambient + phong.diffuse + phong.specular
+    phong.ambient.get() + phong.diffuse.get() + phong.specular.get()
 }

@@ -58,7 +58,7 @@ pub fn surface(
         step_mm: view.step_mm(),
         caps: u32::from(caps),
         refine: refine_number(refine),
-        iterations: refine.iterations,
+        iterations: refine.iterations(),
         traverse: view.traverse(),
         probe: u32::from(view.scene.sampling.probe),
         iso_error,

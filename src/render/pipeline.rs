@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::{Buffer, Device, PassTime, Timings};
 use crate::octree::Octree;
-use crate::scene::{Picture, Sampling, SamplingMethod, Scene, Storage};
+use crate::scene::{Picture, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::classified::{Criterion, RecentlyClassified};
@@ -290,21 +290,14 @@ fn check_work_group(device: &Device, work_group: Option<[usize; 2]>) -> Result<(
 
 /// Samples are counted in single precision: a ray may have at most [`MOST_SAMPLES`] of them.
 fn check_step(scene: &Scene, volume: &Volume) -> Result<()> {
-    let step_voxels = scene.sampling.step_voxels;
-    if !Sampling::STEP_VOXELS.contains(&step_voxels) {
-        return Err(Error::usage(format!(
-            "a step of {step_voxels} voxels: it must be {} to {}",
-            Sampling::STEP_VOXELS.start(),
-            Sampling::STEP_VOXELS.end()
-        )));
-    }
     let (_, radius_mm) = volume.bounding_sphere();
     let samples = 2.0 * radius_mm / twins::step_mm(&scene.sampling, volume);
     if samples < f64::from(MOST_SAMPLES) {
         return Ok(());
     }
     Err(Error::usage(format!(
-        "a step of {step_voxels} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24"
+        "a step of {} voxels of the smallest spacing gives up to {samples:.3e} samples per ray, more than 2^24",
+        scene.sampling.step
     ))
     .hint("choose a larger --step, or in dvr --quad adaptive, else --sampling exact, which take none"))
 }

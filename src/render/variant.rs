@@ -104,7 +104,7 @@ const fn traverse_constant(traverse: Traverse) -> u32 {
 }
 
 pub fn refine_number(refine: Refine) -> u32 {
-    refine_constant(refine.method)
+    refine_constant(refine.method())
 }
 
 const fn refine_constant(method: RefineMethod) -> u32 {
@@ -173,7 +173,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 const CONSTANTS: &[(&str, u32)] = &[
     ("LATTICE_MOST_SAMPLES", MOST_SAMPLES),
     ("BRICK", cells::BRICK as u32),
-    ("CLIP_MOST_PLANES", ClipPlane::MOST as u32),
+    ("CLIP_MOST_PLANES", ClipPlane::MAX_COUNT as u32),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("TRANSFER_MOST_KNOTS", medium::MOST_KNOTS),
     ("KIND_NOTHING", Kind::Nothing as u32),

@@ -13,6 +13,7 @@ mod read;
 mod robust;
 mod shortened;
 mod smooth;
+mod subject;
 mod write_nrrd;
 
 pub use buffer::{Voxel, VoxelBuffer, VoxelType, Voxels};

@@ -1,6 +1,6 @@
 //! Rays along the voxel grid and through its corners, and eyes on it.
 
-use angioray::scene::{Camera, Filter, Lens};
+use angioray::scene::{Camera, Filter, Lens, StepVoxels};
 use glam::DVec3;
 
 use super::common::{self, moved_by_a_pixel, on_device, on_reference, volume_of};
@@ -143,7 +143,7 @@ fn one_bright_voxel_is_found_at_every_kind_of_corner() {
             for mode in [Mode::Mip, Mode::Iso, Mode::Dvr] {
                 let camera = through(at, toward_eye);
                 let mut scene = trial.scene(picture(mode, &volume), camera, size(1, 1));
-                scene.sampling.step_voxels = 0.5;
+                scene.sampling.step = StepVoxels::new(0.5).unwrap();
                 scenes.push(scene);
             }
         }

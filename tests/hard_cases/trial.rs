@@ -5,9 +5,11 @@ use angioray::frame::{Frame, Kind, Wanted};
 use angioray::gpu::Device;
 use angioray::hardcases::scenes;
 use angioray::octree::{Leaf, Octree};
+use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Picture, Scene, SceneOptions, Subject, Traverse};
+use angioray::scene::{Picture, Scene, Traverse};
+use angioray::subject::Subject;
 use angioray::volume::{HardCase, Histogram, Volume, suggested_iso};
 
 use crate::common::{self, assert_sound, on_reference};

@@ -4,7 +4,9 @@ use angioray::frame::{Frame, Wanted};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Emission, Knot, Picture, Projection, Rgb, Scene, TransferFunction, Window};
+use angioray::scene::{
+    Emission, Knot, Picture, Projection, Rgb, Scene, Termination, TransferFunction, Window,
+};
 use angioray::volume::{
     Geometry, HardCase, NonFinite, ReadOptions, Rescale, Volume, Voxels, orientation_of, read,
 };
@@ -149,7 +151,7 @@ fn pictures(surface: &Scene) -> [Scene; 3] {
     };
     let knots = vec![knot(60.0, 0.0), knot(220.0, 0.4)];
     let emission = Emission {
-        termination: 1.0,
+        termination: Termination::NEVER,
         ..Emission::of(TransferFunction::new(knots, 2.0).unwrap())
     };
     let maximum = Picture::Projection {

@@ -42,7 +42,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 fn list(bench: &Bench, specimen: &Specimen, paper: [f64; 3]) -> Result<Vec<Way>> {
     let surface = specimen.surface(bench.effort.side_px())?;
     let (none, six) = ("none".parse::<Refine>()?, "bisection:6".parse::<Refine>()?);
-    let fine = plain_steps(&surface, 1.0, none);
+    let fine = plain_steps(&surface, 1.0, none)?;
     let mut exact = surface.clone();
     exact.sampling.method = SamplingMethod::Exact;
     Ok(vec![
@@ -52,12 +52,12 @@ fn list(bench: &Bench, specimen: &Specimen, paper: [f64; 3]) -> Result<Vec<Way>>
             .same_as(0),
         Way::new(
             "+ skipping, step 1 refined",
-            plain_steps(&surface, 1.0, six),
+            plain_steps(&surface, 1.0, six)?,
         ),
-        Way::new("+ skipping, step 5", plain_steps(&surface, 5.0, none)),
+        Way::new("+ skipping, step 5", plain_steps(&surface, 5.0, none)?),
         Way::new(
             "+ skipping, step 5 refined",
-            plain_steps(&surface, 5.0, six),
+            plain_steps(&surface, 5.0, six)?,
         )
         .paper_fps(Some(paper[2])),
         Way::new("exact", exact),

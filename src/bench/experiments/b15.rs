@@ -110,7 +110,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 /// falsi, kd-restart.
 fn base(bench: &Bench, specimen: &Specimen) -> Result<Way> {
     let surface = specimen.surface(bench.effort.side_px())?;
-    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?)?;
     scene.sampling.traverse = Traverse::KdRestart;
     if let Picture::Surface { phong, .. } = &mut scene.picture {
         *phong = Some(Phong::default());

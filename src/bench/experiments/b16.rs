@@ -44,7 +44,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 
 fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
     let surface = specimen.surface(bench.effort.side_px())?;
-    let march = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    let march = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?)?;
     let by = |traverse: Traverse| {
         let mut scene = march.clone();
         scene.sampling.traverse = traverse;

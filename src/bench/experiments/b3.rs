@@ -40,7 +40,7 @@ fn list(bench: &Bench, specimen: &Specimen) -> Result<Vec<Way>> {
     for step in STEPS {
         for refiner in REFINERS {
             let of_paper = PAPER.iter().find(|(s, r, _)| (*s, *r) == (step, refiner));
-            let scene = plain_steps(&surface, step, refiner.parse::<Refine>()?);
+            let scene = plain_steps(&surface, step, refiner.parse::<Refine>()?)?;
             let way = Way::new(format!("step {step}, {refiner}"), scene);
             ways.push(way.paper_fps(of_paper.map(|(_, _, fps)| *fps)));
         }

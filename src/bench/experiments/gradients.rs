@@ -6,10 +6,10 @@ use super::super::{Bench, Conduct, Experiment, Outcome, Protocol, Specimen};
 use crate::error::Result;
 use crate::frame::error::normal_error;
 use crate::frame::{Frame, Wanted};
+use crate::number_text::concise;
 use crate::reference;
 use crate::render::Rendering;
 use crate::report::{Cell, Shown, Table};
-use crate::scene::options::concise;
 use crate::scene::{Gradient, Precomputed, Scene};
 use crate::volume::PhantomKind;
 

@@ -9,10 +9,11 @@ use crate::frame::Frame;
 use crate::measure::{
     Times, Tradeoff, Wrongness, family, front, grid, judge, judged_planes, scale_of,
 };
+use crate::options::Setting;
 use crate::reference;
 use crate::render::Renderer;
 use crate::report::{Point, Scatter, Section, Shown, Table, figure};
-use crate::scene::{Mode, Scene, Setting};
+use crate::scene::{Mode, Scene};
 use crate::volume::PhantomKind;
 
 pub const EXPERIMENT: Experiment = Experiment {

@@ -12,11 +12,13 @@ use crate::frame::error::{color_error, depth_error, value_error};
 use crate::frame::{Frame, Wanted, percentile};
 use crate::measure::interleaved;
 use crate::octree::{Leaf, Octree};
+use crate::options::{ErrorBound, ErrorMetric, SceneOptions};
 use crate::progress::{Silent, Stage};
 use crate::reference;
 use crate::render::Renderer;
 use crate::report::{Point, Scatter, Section, Shown, Table};
-use crate::scene::{ErrorBound, ErrorMetric, Mode, Scene, SceneOptions, Subject};
+use crate::scene::{Mode, Scene};
+use crate::subject::Subject;
 use crate::tolerance::{CONFIDENCE, Task, candidates, choose};
 use crate::volume::Volume;
 

@@ -9,11 +9,11 @@ use crate::error::Result;
 use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
 use crate::frame::{Frame, Wanted};
 use crate::measure::{Times, Tradeoff, front};
+use crate::number_text::concise;
 use crate::reference;
 use crate::render::Renderer;
 use crate::report::{Cell, Point, Scatter, Section, Shown, Table};
-use crate::scene::options::concise;
-use crate::scene::{Picture, Refine, SamplingMethod, Scene};
+use crate::scene::{Picture, Refine, SamplingMethod, Scene, StepVoxels};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "vessels",
@@ -68,16 +68,16 @@ impl Method {
         }
     }
 
-    fn of(self, mut scene: Scene) -> Scene {
+    fn of(self, mut scene: Scene) -> Result<Scene> {
         match self {
             Self::Exact => scene.sampling.method = SamplingMethod::Exact,
             Self::Steps(step_voxels, probe) => {
                 scene.sampling.method = SamplingMethod::Fixed;
-                scene.sampling.step_voxels = step_voxels;
+                scene.sampling.step = StepVoxels::new(step_voxels)?;
                 scene.sampling.probe = probe;
             }
         }
-        scene
+        Ok(scene)
     }
 }
 
@@ -108,7 +108,7 @@ impl Setting {
     }
 
     fn of(self, scene: Scene) -> Result<Scene> {
-        let mut scene = self.method.of(scene);
+        let mut scene = self.method.of(scene)?;
         if let Picture::Surface { refine, .. } = &mut scene.picture {
             *refine = self.refiner.parse::<Refine>()?;
         }
@@ -306,7 +306,8 @@ fn measure(bench: &Bench, specimen: &Specimen) -> Result<Measured> {
 
     let projection = specimen.maximum(side_px)?;
     let methods = Method::all().into_iter();
-    let scenes: Vec<Scene> = methods.map(|m| m.of(projection.clone())).collect();
+    let scenes = methods.map(|m| m.of(projection.clone()));
+    let scenes: Vec<Scene> = scenes.collect::<Result<_>>()?;
     let value = Wanted {
         value: true,
         ..Wanted::default()

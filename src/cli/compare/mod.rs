@@ -11,9 +11,10 @@ use crate::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_tab
 use crate::error::{Error, Result};
 use crate::measure::Peer;
 use crate::octree::Octree;
+use crate::options::{Count, ErrorBound, FilePath, SceneOptions, ToleranceOptions};
 use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
-use crate::scene::{Count, ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
+use crate::scene::Mode;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};

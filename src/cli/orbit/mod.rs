@@ -1,5 +1,6 @@
 //! `angioray orbit`.
 
+mod frames;
 mod making;
 mod options;
 mod plan;
@@ -7,7 +8,6 @@ mod stats;
 
 use crate::batch::Destination;
 use crate::error::Result;
-use crate::scene::Orbit;
 
 use super::engine::Engine;
 use super::job::JobArguments;
@@ -15,6 +15,7 @@ use super::progress::Bars;
 use super::render::{gradient_note, provenance};
 use super::stopping;
 use super::terminal::{message, note};
+use frames::Frames;
 use making::{Made, Making};
 use options::OrbitOptions;
 use plan::Plan;
@@ -59,7 +60,7 @@ impl OrbitArguments {
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;
-        let orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
+        let frames = Frames::new(resolved, &plan)?;
 
         let making = Making {
             plan: &plan,
@@ -70,9 +71,9 @@ impl OrbitArguments {
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();
-        let missing = making.missing(&orbit, &mine)?;
+        let missing = making.missing(&frames, &mine)?;
         let kept = mine.len() - missing.len();
-        let made = making.make(orbit, &missing)?;
+        let made = making.make(frames, &missing)?;
         stats::write(&making, &made, kept)?;
         if let Some(stopped) = made.stopped {
             return Err(stopped);
@@ -114,7 +115,7 @@ fn tell(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
     };
     let count = written.len();
     let render_ms: f64 = written.iter().map(|w| w.about.times_ms.render).sum();
-    let first = made.orbit.at(0)?;
+    let first = made.frames.first();
     message(format_args!(
         "wrote {files}: {count} frames{there}, {} {}, {:.1} ms each on {}",
         first.scene.picture.mode(),

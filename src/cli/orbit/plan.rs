@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::batch::{Destination, FrameNames, KeptFrames, Shard, ShardChoice};
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Animation, AnimationFormat, Encoding, Format};
+use crate::options::{AngleDeg, FilePath, Switch};
 use crate::output::becomes_file;
-use crate::scene::{AngleDeg, FilePath, FrameCount, OrbitAxis, Switch};
+use crate::scene::{FrameCount, OrbitAxis};
 
 use super::super::job::Job;
 use super::super::outputs;

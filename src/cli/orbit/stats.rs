@@ -51,7 +51,7 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
         return Ok(());
     };
     let written = &made.written;
-    let first = made.orbit.at(0)?;
+    let first = made.frames.first();
     let choosing = (made.chosen.as_ref()).map_or(Cost::default(), |choice| choice.cost);
     let most_held = written.iter().map(|w| w.about.device_bytes).max();
     let gradients = written.last().and_then(|w| w.about.gradients);
@@ -84,7 +84,7 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
         orbit: OrbitFigures {
             frames: plan.frames.get(),
             degrees: plan.degrees,
-            axis: made.orbit.axis().to_array(),
+            axis: made.frames.orbit.axis().to_array(),
             kept,
             shard: plan.shard.to_string(),
         },
@@ -93,7 +93,7 @@ pub fn write(making: &Making<'_>, made: &Made, kept: usize) -> Result<()> {
             .filter_map(|w| {
                 Some(FrameStats {
                     index: w.index,
-                    degrees: made.orbit.degrees_at(w.index),
+                    degrees: made.frames.orbit.degrees_at(w.index),
                     render_ms: w.about.times_ms.render,
                     read_back_ms: w.about.times_ms.read_back,
                     encode_ms: w.encode_ms,

@@ -8,8 +8,8 @@ use crate::bench::Specimen;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::scene::{
-    Camera, Emission, Knot, Lens, Light, Mode, Phong, Picture, Projection, Quadrature, Refine, Rgb,
-    Sampling, SamplingMethod, Scene, Tone, TransferFunction, Window,
+    Camera, Emission, Knot, Lens, Light, Mode, Phong, Picture, Projection, Quadrature, Refine,
+    Reflectance, Rgb, Sampling, SamplingMethod, Scene, Tone, TransferFunction, Window,
 };
 
 /// What is seen; ways of seeing the same have one truth and one rival.
@@ -109,9 +109,9 @@ pub fn scene(
 ) -> Result<Scene> {
     let range = specimen.volume.range();
     let phong = Some(Phong {
-        ambient: PHONG.0,
-        diffuse: PHONG.1,
-        specular: 0.0,
+        ambient: Reflectance::new(PHONG.0)?,
+        diffuse: Reflectance::new(PHONG.1)?,
+        specular: Reflectance::new(0.0)?,
         ..Phong::default()
     });
     let projection = |of| -> Result<Picture> {
@@ -167,7 +167,7 @@ pub fn contenders(specimen: &Specimen, side_px: u32, media: &[Medium]) -> Result
         ..Sampling::default()
     };
     let (exact, plain) = (Sampling::default(), Quadrature::default());
-    let steps = format!("step {}", fixed.step_voxels);
+    let steps = format!("step {}", fixed.step);
     let mut all = Vec::new();
     for (look, setting, sampling) in [
         (Look::Surface, "exact", exact),

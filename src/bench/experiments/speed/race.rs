@@ -14,7 +14,7 @@ use crate::measure::{
 use crate::progress::Stage;
 use crate::render::Renderer;
 use crate::report::without_folders;
-use crate::scene::{Sampling, SamplingMethod, Scene, Storage};
+use crate::scene::{Sampling, SamplingMethod, Scene, StepVoxels, Storage};
 
 /// What one frame took, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -131,23 +131,24 @@ enum Turn<'a> {
 
 /// What sampling alone samples: from a buffer first, by which casts are judged, then from images where the
 /// device has them.
-fn straight_rays(contenders: &[Contender], renderer: &Renderer) -> Vec<Scene> {
+fn straight_rays(contenders: &[Contender], renderer: &Renderer) -> Result<Vec<Scene>> {
     let Some(first) = contenders.first() else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
+    let step = StepVoxels::new(1.0)?;
     let held = Storage::ALL
         .into_iter()
         .filter(|&voxels| renderer.check_storage(voxels).is_ok());
     let straight = held.map(|voxels| Scene {
         sampling: Sampling {
             method: SamplingMethod::Fixed,
-            step_voxels: 1.0,
+            step,
             voxels,
             ..Sampling::default()
         },
         ..first.scene.clone()
     });
-    straight.collect()
+    Ok(straight.collect())
 }
 
 /// All rows: of the contenders, of sampling alone, of the peer.
@@ -183,7 +184,7 @@ pub fn race(entrants: Entrants) -> Result<Vec<Raced>> {
             turns.push(Turn::Peer(scene, &first.scene));
         }
     }
-    let straight = straight_rays(contenders, &renderer);
+    let straight = straight_rays(contenders, &renderer)?;
     for scene in &straight {
         rows.push(Raced {
             runner: Runner::Sampling,

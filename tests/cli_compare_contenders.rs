@@ -504,7 +504,7 @@ fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
         .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
     let said = stderr(&output);
-    assert!(said.contains("pictures are not kept"), "{said}");
+    assert!(said.contains("pictures are not cached"), "{said}");
     assert_eq!(rows(&place).len(), 1);
     fs::remove_dir_all(place.path("out")).unwrap();
     // One that the user names has to work.

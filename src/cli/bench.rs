@@ -8,9 +8,10 @@ use crate::bench::{Bench, EXPERIMENTS, Effort, Experiment, Protocol, Specimen, S
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceInfo;
 use crate::number_text::concise;
-use crate::options::group::group;
+use crate::options::group::{Keys, group};
+use crate::options::rules::{Group, Need, unmet};
 use crate::options::text_form::one_or_more;
-use crate::options::{Count, FilePath, Switch, Threshold, VolumeOptions};
+use crate::options::{Count, FilePath, SceneFile, Switch, Threshold, VolumeOptions};
 use crate::progress::Progress;
 use crate::volume::percentiles;
 
@@ -76,14 +77,14 @@ group! {
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         frames: Count,
 
-        /// Another renderer to race in the experiment speed, as a command line that speaks the protocol
+        /// Another renderer to time in the experiment speed, as a command line that speaks the protocol
         /// of scripts/peers/README.md in angioray's source
         #[arg(long, value_name = "COMMAND")]
         peer: String,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
-        /// pictures; made where there is none. It fills as the work goes on: the same command goes
-        /// on where it was stopped
+        /// pictures; made where there is none. It fills during the work: the same command resumes
+        /// where it was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
@@ -104,7 +105,87 @@ group! {
     }
 }
 
-/// The experiments, how a run is gone on with, examples.
+impl BenchOptions {
+    /// Takes the options from a scene file; the files that it names are relative to it.
+    fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        let named_here = |volumes: Vec<FilePath>| {
+            let volumes = volumes.into_iter();
+            volumes.map(|volume| file.named_here(volume)).collect()
+        };
+        Ok(Self {
+            output: options.output.map(|path| file.named_here(path)),
+            volumes: options.volumes.map(named_here),
+            ..options
+        })
+    }
+
+    /// Lays these flags over a scene file's options: --quick or --full says all that a file says by both
+    /// keys.
+    fn over_file(self, mut file: Self) -> Self {
+        if is_on(self.quick) || is_on(self.full) {
+            (file.quick, file.full) = (None, None);
+        }
+        self.over(file)
+    }
+
+    /// Checks that each option has an effect in the experiment.
+    ///
+    /// # Errors
+    /// Usage: one has none.
+    fn check(&self, experiment: &Experiment) -> Result<()> {
+        let name = experiment.name;
+        let has_volumes = self.volumes.as_ref().is_some_and(|all| !all.is_empty());
+        if has_volumes && !experiment.takes_volumes {
+            return Err(Error::usage(format!(
+                "the experiment '{name}' takes no volumes: it makes its own"
+            )));
+        }
+        let is_met = |need| match need {
+            Need::AimedRays => experiment.counts_rays,
+            Need::TimedFrames => experiment.times_frames,
+            Need::Rounds => experiment.races,
+            Need::Volumes => has_volumes,
+            // To forget nothing needs no folder.
+            Need::ResultsFolder => self.output.is_some() || !is_on(self.restart),
+            _ => true,
+        };
+        let Some((option, need)) = unmet(Group::Bench, &self.given(), is_met) else {
+            return Ok(());
+        };
+        Err(match need {
+            Need::TimedFrames => Error::usage(format!(
+                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
+            )),
+            Need::Volumes => Error::usage(format!("'--{option}' has no effect without a volume"))
+                .hint("name the volumes that are looked at there"),
+            Need::ResultsFolder => {
+                Error::usage(format!("'--{option}' has no effect without '--output'"))
+            }
+            _ => Error::usage(format!(
+                "'--{option}' has no effect in the experiment '{name}'"
+            )),
+        })
+    }
+
+    /// How thoroughly is measured.
+    ///
+    /// # Errors
+    /// Usage: by both flags.
+    fn effort(&self) -> Result<Effort> {
+        match (is_on(self.quick), is_on(self.full)) {
+            (true, true) => {
+                Err(Error::usage("'quick' and 'full' do not go together")
+                    .hint("choose one of them"))
+            }
+            (true, false) => Ok(Effort::Quick),
+            (false, true) => Ok(Effort::Full),
+            (false, false) => Ok(Effort::default()),
+        }
+    }
+}
+
+/// The experiments, how a run is resumed, examples.
 fn after_help() -> StyledStr {
     let mut text = String::from("Experiments:");
     for experiment in EXPERIMENTS {
@@ -113,8 +194,8 @@ fn after_help() -> StyledStr {
     text.push_str(
         "
 
-A run with --output that is stopped, by Ctrl-C or SIGTERM, ends with exit code 75; the same command goes
-on with it.
+A run with --output that is stopped, by Ctrl-C or SIGTERM, ends with exit code 75; the same command
+resumes it.
 
 Example:
   angioray bench vessels
@@ -131,21 +212,8 @@ Example:
 impl BenchArguments {
     pub fn run(self) -> Result<()> {
         let file = self.scene.open()?;
-        let mut of_file = file.group::<BenchOptions>()?;
-        of_file.output = of_file.output.map(|path| file.named_here(path));
-        let named_here = |volumes: Vec<FilePath>| {
-            let volumes = volumes.into_iter();
-            volumes.map(|volume| file.named_here(volume)).collect()
-        };
-        of_file.volumes = of_file.volumes.map(named_here);
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
-        let is_on = |switch: Option<Switch>| switch.is_some_and(Switch::is_on);
-        if is_on(self.bench.quick) || is_on(self.bench.full) {
-            // Either flag says all that a file says by both keys.
-            (of_file.quick, of_file.full) = (None, None);
-        }
-        let options = self.bench.over(of_file);
+        let options = self.bench.over_file(BenchOptions::of_file(&file)?);
+        let device = self.device.over_file(file.group()?);
 
         let Some(name) = &options.experiment else {
             let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
@@ -153,56 +221,13 @@ impl BenchArguments {
                 .hint(format!("write one of {}", names.join(", "))));
         };
         let experiment = Experiment::named(name)?;
+        options.check(experiment)?;
+        let effort = options.effort()?;
         let volumes = options.volumes.unwrap_or_default();
-        if !volumes.is_empty() && !experiment.takes_volumes {
-            return Err(Error::usage(format!(
-                "the experiment '{name}' takes no volumes: it makes its own"
-            )));
-        }
-        let aims = [
-            ("--rays", options.rays.is_some()),
-            ("--seed", options.seed.is_some()),
-        ];
-        if let Some((flag, _)) = (aims.iter()).find(|(_, given)| *given && !experiment.counts_rays)
-        {
-            return Err(Error::usage(format!(
-                "'{flag}' has no effect in the experiment '{name}'"
-            )));
-        }
-        if options.protocol.is_some() && !experiment.times_frames {
-            return Err(Error::usage(format!(
-                "'--protocol' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
-            )));
-        }
-        let races = [
-            ("--frames", options.frames.is_some()),
-            ("--peer", options.peer.is_some()),
-        ];
-        if let Some((flag, _)) = races.iter().find(|(_, given)| *given && !experiment.races) {
-            return Err(Error::usage(format!(
-                "'{flag}' has no effect in the experiment '{name}'"
-            )));
-        }
-        if options.iso.is_some() && volumes.is_empty() {
-            return Err(Error::usage("'--iso' has no effect without a volume")
-                .hint("name the volumes that are looked at there"));
-        }
-        if is_on(options.restart) && options.output.is_none() {
-            return Err(Error::usage("'--restart' has no effect without '--output'"));
-        }
-        let effort = match (is_on(options.quick), is_on(options.full)) {
-            (true, true) => {
-                return Err(Error::usage("'quick' and 'full' do not go together")
-                    .hint("choose one of them"));
-            }
-            (true, false) => Effort::Quick,
-            (false, true) => Effort::Full,
-            (false, false) => Effort::default(),
-        };
         if options.output.is_some() {
             stopping::between_parts("unit of work", ErrorKind::Stopped)?;
         } else {
-            stopping::at_once("without --output nothing is kept")?;
+            stopping::at_once("without --output nothing is saved")?;
         }
         let Engine::Device {
             device,
@@ -271,6 +296,10 @@ impl BenchArguments {
     }
 }
 
+fn is_on(switch: Option<Switch>) -> bool {
+    switch.is_some_and(Switch::is_on)
+}
+
 /// A volume file, looked at where the user says or the histogram suggests.
 fn specimen(
     path: &Path,
@@ -285,17 +314,17 @@ fn specimen(
     let loaded = source.load(Some(device), progress)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let percentile = iso.and_then(Threshold::percentile);
-    let told = match (percentile, iso) {
+    let given = match (percentile, iso) {
         (Some(percent), _) => percentiles(&loaded.volume, &[percent]).first().copied(),
         (None, iso) => iso.map(|iso| iso.resolve(&loaded.subject)).transpose()?,
     };
     let range = loaded.volume.range();
-    if let Some(told) = told
-        && !(range.min..=range.max).contains(&told)
+    if let Some(given) = given
+        && !(range.min..=range.max).contains(&given)
     {
         return Err(Error::usage(format!(
             "'--iso {}' lies outside the values of {}, {} to {}: there is no surface",
-            concise(told),
+            concise(given),
             path.display(),
             concise(range.min),
             concise(range.max)
@@ -303,10 +332,10 @@ fn specimen(
         .hint("name a value between them, or a share of the value range such as 50%"));
     }
     let specimen = Specimen {
-        // Without what tells the format.
+        // Without what names the format.
         name: name.split('.').next().unwrap_or_default().to_owned(),
         volume: loaded.volume,
-        iso: told.unwrap_or(loaded.subject.suggested_iso),
+        iso: given.unwrap_or(loaded.subject.suggested_iso),
     };
     if !matches!(iso, Some(Threshold::Value(_))) {
         let by = match iso {

@@ -89,7 +89,7 @@ impl Source {
         options
     }
 
-    /// The volume, smoothed where that is asked for. One that the device is too small for is refused before
+    /// The volume, smoothed where that is wanted. One that the device is too small for is refused before
     /// its voxels are read.
     ///
     /// # Errors

@@ -95,7 +95,7 @@ impl Command {
         match &self {
             Self::Orbit(_) | Self::Bench(_) => {}
             Self::Compare(_) => stopping::at_once(
-                "the results so far are in its folder, and the reference's pictures are kept",
+                "the results so far are in its folder, and the reference's pictures are cached",
             )?,
             _ => stopping::at_once("no file is left half-written")?,
         }

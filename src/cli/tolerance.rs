@@ -1,4 +1,4 @@
-//! `--max-error`: choosing, and telling the user.
+//! `--max-error`: choosing, and reporting the choice.
 
 use crate::error::Result;
 use crate::frame::Wanted;
@@ -11,8 +11,8 @@ use super::load::Loaded;
 use super::progress::Bars;
 use super::terminal::note;
 
-/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
-/// what all errors are taken against: it needs no choice, whatever the bound. Told to the user.
+/// Chooses the cheapest way of following rays that keeps a bound, and prints the choice. The reference has
+/// but one way, which is what all errors are taken against: it needs no choice, whatever the bound.
 pub fn choose(
     bound: ErrorBound,
     options: &SceneOptions,

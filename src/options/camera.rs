@@ -78,7 +78,7 @@ impl CameraOptions {
     /// How far out the eye and the target may be.
     const FAR_MM: f64 = 1e12;
     /// How far from the volume's centre the eye may be, in radii of the bounding sphere: from
-    /// farther away rays differ by less than their numbers tell apart.
+    /// farther away rays differ by less than their numbers resolve.
     const FAR_RADII: f64 = 1e9;
 
     /// Checks that no point is too far away.
@@ -151,7 +151,7 @@ impl CameraOptions {
         }
     }
 
-    /// Checks that the rays of an eye can be told apart.
+    /// Checks that an eye is so near that its rays differ.
     fn check_distance(eye: DVec3, subject: &Subject) -> Result<()> {
         let far_mm = Self::FAR_RADII * subject.radius_mm;
         let distance_mm = eye.distance(subject.center_world);

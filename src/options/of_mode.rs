@@ -2,7 +2,7 @@
 
 use super::SceneOptions;
 use super::group::Keys;
-use super::rules::{Group, Need, rule};
+use super::rules::{Group, Need, has_needs};
 use crate::scene::{Mode, SamplingMethod, Storage};
 
 impl SceneOptions {
@@ -13,14 +13,12 @@ impl SceneOptions {
         let mut all = self.clone();
         all.picture.mode = Some(mode);
         let goes_with_mode = |option: &str| {
-            let needs = rule(Group::Scene, option).map_or(&[][..], |rule| rule.needs);
-            let of_mode = needs.iter().filter(|need| {
-                matches!(
-                    need,
-                    Need::Modes(..) | Need::IdleBeside(_) | Need::Shading | Need::Normals
-                )
-            });
-            of_mode.copied().all(|need| all.meets(need))
+            has_needs(Group::Scene, option, |need| match need {
+                Need::Modes(..) | Need::IdleBeside(_) | Need::Shading | Need::Normals => {
+                    all.meets(need)
+                }
+                _ => true,
+            })
         };
         let mut options = all.clone().keeping(goes_with_mode);
         // Of both, the quadrature says more of how an integral is sampled.

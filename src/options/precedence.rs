@@ -2,7 +2,7 @@
 
 use super::SceneOptions;
 use super::group::Keys;
-use super::rules::{Group, Need, REPLACED, rule};
+use super::rules::{Group, Need, REPLACED, has_needs};
 
 impl SceneOptions {
     /// Lays these flags over a scene file's options. What a flag rules out in the file, such as the eye
@@ -20,10 +20,9 @@ impl SceneOptions {
         let kept = file.clone().keeping(|option| !replaced.contains(&option));
         let together = self.clone().or(kept.clone());
         kept.keeping(|option| {
-            let needs = rule(Group::Scene, option).map_or(&[][..], |rule| rule.needs);
-            !needs
-                .iter()
-                .any(|need| self.rules_out(*need, file, &together))
+            has_needs(Group::Scene, option, |need| {
+                !self.rules_out(need, file, &together)
+            })
         })
     }
 

@@ -204,6 +204,12 @@ pub(crate) fn rule(group: Group, option: &str) -> Option<&'static Rule> {
     RULES.iter().find(is_it)
 }
 
+/// Whether an option has all that it needs.
+pub(crate) fn has_needs(group: Group, option: &str, is_met: impl Fn(Need) -> bool) -> bool {
+    let needs = rule(group, option).map_or(&[][..], |rule| rule.needs);
+    needs.iter().all(|need| is_met(*need))
+}
+
 /// The first of `options` that needs something that is not there, and what.
 pub(crate) fn unmet(
     group: Group,

@@ -17,7 +17,7 @@ pub struct ClipPlane {
 }
 
 impl ClipPlane {
-    /// The most planes of a scene.
+    /// The maximum number of planes of a scene.
     pub const MAX_COUNT: usize = 64;
 
     /// # Errors

@@ -137,10 +137,10 @@ impl Window {
     /// # Errors
     /// The ends are the same value, or either is beyond single precision.
     pub fn new(black: f64, white: f64) -> Result<Self> {
-        let most = f64::from(f32::MAX);
-        if black.abs().max(white.abs()) > most {
+        let max = f64::from(f32::MAX);
+        if black.abs().max(white.abs()) > max {
             return Err(Error::usage(format!(
-                "the window {black:e},{white:e} reaches beyond what a picture's values can: {most:e}"
+                "the window {black:e},{white:e} reaches beyond what a picture's values can: {max:e}"
             )));
         }
         if !(black.is_finite() && white.is_finite() && black != white) {

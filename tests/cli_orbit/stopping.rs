@@ -86,7 +86,7 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
         assert_eq!(output.status.code(), Some(75), "{said}");
         let made = contents(&place, &frames).len();
         assert!((3..40).contains(&made), "{made}");
-        let counted = format!("stopped early: {made} of 40 frames are made and kept in {frames}");
+        let counted = format!("stopped early: {made} of 40 frames are finished, in {frames}");
         assert!(
             said.contains(&counted) && said.contains("--resume"),
             "{said}"

@@ -24,7 +24,7 @@ use super::terminal::{lines_to_stdout, message, note};
 use options::{CompareOptions, Named};
 use page::{about, report};
 
-/// Render modes and settings side by side, judged against the reference and timed
+/// Render modes and settings side by side, compared with the reference and timed
 #[derive(clap::Args)]
 #[command(override_usage = "angioray compare VOLUME -o DIR [OPTIONS]")]
 #[command(after_help = "Example:
@@ -40,7 +40,7 @@ What --sampling, --step, --filter and the like say is compared as one setting mo
 interpolation and with central differences.
 
 Stopped by Ctrl-C or SIGTERM it ends at once with exit code 75; the results so far are in the folder, and
-the reference's pictures are kept for the next run.
+the reference's pictures are cached for the next run.
 
 A file of settings, for --configs:
   [[setting]]
@@ -80,10 +80,9 @@ impl CompareArguments {
         let modes = named.modes().or_else(|| of_file.modes());
         let compare = self.compare.over(compare);
         let options = self.options.clone().over(options);
-        // Beside settings that are given: the one that it chooses is a contender like the others.
+        // Beside settings that are given: the one that it chooses is a candidate like the others.
         let bound = self.tolerance.over(file.group()?).max_error;
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
+        let device = self.device.over_file(file.group()?);
 
         let Some(FilePath(output)) = &compare.output else {
             return Err(Error::usage("no folder for the comparison was named")
@@ -184,7 +183,7 @@ fn mode_settings(
     Ok(of_mode)
 }
 
-/// Lets a bound choose a setting in every mode that has its metric, and tells of the others.
+/// Lets a bound choose a setting in every mode that has its metric, and notes the others.
 fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
     for of_mode in modes {
         if of_mode.add_bound(bound).is_err() {

@@ -1,4 +1,4 @@
-//! What `compare` is told beside the scene.
+//! The options of `compare` beside the scene.
 
 use std::str::FromStr;
 
@@ -35,7 +35,7 @@ group! {
         #[serde(deserialize_with = "one_or_more")]
         peer: Vec<String>,
 
-        /// Where the reference's pictures are kept, so that each is computed once: a folder, or off
+        /// Where the reference's pictures are cached, so that each is computed once: a folder, or off
         /// [default: angioray in the user's cache folder]
         #[arg(long, value_name = "DIR|off")]
         cache: FilePath,

@@ -87,8 +87,8 @@ pub fn report(
         title: format!("{name}: speed against error"),
         summary: "Every picture here was drawn several ways and held against a reference that \
             solves the picture by its definition, in double precision. Points further down are \
-            nearer to the truth, points further left are faster; the line joins the settings that \
-            are worth their time: nothing less wrong is as fast."
+            nearer to the reference, points further left are faster; the line joins the settings that \
+            are worth their time: nothing more accurate is as fast."
             .into(),
         facts: facts
             .into_iter()

@@ -1,4 +1,4 @@
-//! Where the reference's pictures are kept.
+//! Where the reference's pictures are cached.
 
 use crate::error::Result;
 use crate::kept;
@@ -9,7 +9,7 @@ use crate::volume::Volume;
 use super::super::terminal::note;
 use super::options::OFF;
 
-/// Reference pictures, kept where the user says, else in the user's cache folder, as far as there can be
+/// Reference pictures, cached where the user says, else in the user's cache folder, as far as there can be
 /// one: to work without it costs nothing but time.
 pub fn truth(asked: Option<FilePath>, volume: &Volume) -> Result<Truth<'_>> {
     match asked {
@@ -24,7 +24,7 @@ pub fn truth(asked: Option<FilePath>, volume: &Volume) -> Result<Truth<'_>> {
             };
             Ok(Truth::kept_in(&folder, volume).unwrap_or_else(|error| {
                 note(format_args!(
-                    "the reference's pictures are not kept: {error}"
+                    "the reference's pictures are not cached: {error}"
                 ));
                 Truth::uncached(volume)
             }))

@@ -1,4 +1,4 @@
-//! The frames of an orbit, one after another, until they are all there or it is asked to stop.
+//! The frames of an orbit, one after another, until they are all there or it is to stop.
 
 use crate::batch::{Destination, Provenance, Shot, Written, beside};
 use crate::error::{Error, ErrorKind, Result};
@@ -112,7 +112,7 @@ impl Making<'_> {
         })
     }
 
-    /// Writes an animation all of whose frames are kept.
+    /// Writes an animation all of whose frames exist.
     fn join(&self, frames: &Frames) -> Result<()> {
         let destination = &self.plan.destination;
         if let Destination::Animation { .. } = destination {
@@ -204,27 +204,27 @@ impl Making<'_> {
     }
 
     /// # Errors
-    /// It is asked to stop, `made` of `of` frames being made.
+    /// It is to stop, `made` of `of` frames being made.
     fn check_stop(&self, chosen: Option<&Choice>, made: usize, of: usize) -> Result<()> {
         if !stop::asked() {
             return Ok(());
         }
-        let mut told = format!("stopped early: {made} of {of} frames are made");
+        let mut stopped = format!("stopped early: {made} of {of} frames are finished");
         if let Destination::Animation { path, kept, .. } = &self.plan.destination {
             let path = path.display();
-            told = match kept {
+            stopped = match kept {
                 Some(kept) => format!(
-                    "{told} and kept in {}; {path} is written when all are there",
+                    "{stopped}, in {}; {path} is written when all are",
                     kept.folder().display()
                 ),
-                None => format!("{told}, and {path} has got none of them"),
+                None => format!("{stopped}, and {path} holds none of them"),
             };
         }
         if self.plan.ended_early() != ErrorKind::Stopped {
-            return Err(Error::failed(told)
+            return Err(Error::failed(stopped)
                 .hint("--resume makes the rest of .png, .exr and animation files only"));
         }
-        Err(Error::stopped(told).hint(match (self.job.bound, chosen) {
+        Err(Error::stopped(stopped).hint(match (self.job.bound, chosen) {
             (None, _) => "run the same command with --resume for the rest".to_owned(),
             (Some(_), Some(choice)) => format!(
                 "run the same command with --resume, and with {} instead of --max-error, for the rest",

@@ -35,7 +35,7 @@ use plan::Plan;
 
 Stopped by Ctrl-C or SIGTERM it finishes the frame in work and ends with exit code 75; a second signal
 ends it at once. The same command with --resume makes the rest (where --max-error chose, the flags to give
-in its place are shown). The frames of an animation are kept in a folder beside it, such as head.mp4.frames,
+in its place are shown). The frames of an animation are stored in a folder beside it, such as head.mp4.frames,
 until it is whole. Pictures other than .png and .exr stay, but cannot be resumed: then the exit code is 1.")]
 pub struct OrbitArguments {
     #[command(flatten)]

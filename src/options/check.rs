@@ -6,6 +6,15 @@ use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
 use crate::scene::{Mode, SamplingMethod};
 
+/// In which order needs are checked: that an option belongs to another mode says more than that something
+/// else is missing.
+const FIRST_NEEDS: [fn(Need) -> bool; 4] = [
+    |need| need == Need::Eye,
+    |need| matches!(need, Need::Modes(..)),
+    |need| need == Need::Shading,
+    |_| true,
+];
+
 impl SceneOptions {
     /// Refuses contradictions and reads the transfer function: all that can be known without the volume.
     ///
@@ -38,18 +47,22 @@ impl SceneOptions {
     /// # Errors
     /// Usage: an option lacks what it needs; two of them contradict each other.
     pub(super) fn check_rules(&self) -> Result<()> {
-        let given = self.given();
-        // That an option belongs to another mode says more than that something else is missing.
-        let is_of_mode = |need| !matches!(need, Need::Modes(..)) || self.meets(need);
-        let unmet = unmet(Group::Scene, &given, is_of_mode)
-            .or_else(|| unmet(Group::Scene, &given, |need| self.allows(need)));
-        if let Some((option, need)) = unmet {
-            return Err(self.refusal(option, need));
+        if let Some(row) = CONTRADICTIONS.iter().find(|row| (row.is_in)(self)) {
+            let error = Error::usage(row.sentence);
+            return Err(match row.hint {
+                "" => error,
+                hint => error.hint(hint),
+            });
         }
-        match CONTRADICTIONS.iter().find(|row| (row.is_in)(self)) {
+        let given = self.given();
+        let missing = FIRST_NEEDS.iter().find_map(|is_first| {
+            unmet(Group::Scene, &given, |need| {
+                !is_first(need) || self.allows(need)
+            })
+        });
+        match missing {
             None => Ok(()),
-            Some(row) if row.hint.is_empty() => Err(Error::usage(row.sentence)),
-            Some(row) => Err(Error::usage(row.sentence).hint(row.hint)),
+            Some((option, need)) => Err(self.refusal(option, need)),
         }
     }
 

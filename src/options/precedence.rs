@@ -2,7 +2,7 @@
 
 use super::SceneOptions;
 use super::group::Keys;
-use super::rules::{Group, Need, REPLACED, has_needs};
+use super::rules::{Group, Need, REPLACED, has_needs, is_other_mode};
 
 impl SceneOptions {
     /// Lays these flags over a scene file's options. What a flag rules out in the file, such as the eye
@@ -29,7 +29,7 @@ impl SceneOptions {
     /// Whether these flags take away from a file what one of its options needs: what the file never had is
     /// refused, unless a flag has to do with it.
     fn rules_out(&self, need: Need, file: &Self, together: &Self) -> bool {
-        let is_other_mode = self.picture.mode.is_some_and(|mode| mode != file.mode());
+        let is_other_mode = is_other_mode(self, file);
         let is_decided = match need {
             Need::Modes(..) => is_other_mode,
             Need::Shading => is_other_mode || self.picture.shading.is_some(),

@@ -94,7 +94,7 @@ const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");
 const NORMALS: Need = Need::Modes(LIT, "a projection has no normals");
 const AVERAGED: Need = Need::Modes(DVR, "only dvr takes a node for its average");
-const SPARSE: Need = Need::Precomputed("only precomputed gradients are stored at every N-th voxel");
+const SPARSE: Need = Need::Precomputed("only precomputed gradients are kept at every N-th voxel");
 const SMOOTHED: Need = Need::Precomputed(
     "only precomputed gradients are smoothed by themselves; 'smooth' is for the volume",
 );
@@ -281,16 +281,21 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "",
     },
     Contradiction {
-        is_in: |all| all.picture.homogeneity.is_some() && all.picture.is_shaded(),
+        is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' does not go with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
     },
     Contradiction {
-        is_in: |all| all.picture.homogeneity.is_some() && !all.quadrature().is_stepped(),
+        is_in: |all| averages(all) && !all.quadrature().is_stepped(),
         sentence: "'homogeneity' does not go with quad 'adaptive', which keeps a bound of its own",
         hint: "choose another quad, or leave homogeneity out",
     },
 ];
+
+/// Whether nodes are taken for their averages.
+fn averages(options: &SceneOptions) -> bool {
+    options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
+}
 
 const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
 
@@ -311,6 +316,18 @@ pub(super) const REPLACED: &[Replaced] = &[
             flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
         },
         options: &["sampling", "step", "probe", "refine"],
+    },
+    // Light of which the file's own mode made no use is not another mode's.
+    Replaced {
+        by: |flags, file| is_other_mode(flags, file) && !file.mode().is_lit(),
+        options: &["shading"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let was_lit = file.mode().is_lit() && file.picture.is_shaded();
+            is_other_mode(flags, file) && flags.picture.shading.is_none() && !was_lit
+        },
+        options: &["ambient", "diffuse", "specular", "shininess", "light"],
     },
     // What implies steps wins over a sampling.
     Replaced {
@@ -385,6 +402,11 @@ pub(super) const REPLACED: &[Replaced] = &[
         options: &["fov"],
     },
 ];
+
+/// Whether the flags name another mode than the file's.
+pub(super) fn is_other_mode(flags: &SceneOptions, file: &SceneOptions) -> bool {
+    flags.picture.mode.is_some_and(|mode| mode != file.mode())
+}
 
 fn is_exact(options: &SceneOptions) -> bool {
     options.sampling.sampling == Some(SamplingMethod::Exact)

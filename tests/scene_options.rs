@@ -86,7 +86,7 @@ fn thresholds_are_values_shares_or_otsu() {
 }
 
 #[test]
-fn a_projection_shows_the_whole_range_unless_told() {
+fn a_projection_shows_the_whole_range_by_default() {
     let window = |line: &[&str]| match resolved(&flags(line)).scene.picture {
         Picture::Projection { window, .. } => (window.black(), window.white()),
         other => panic!("{other:?}"),
@@ -269,7 +269,7 @@ fn an_iso_value_outside_the_range_says_what_is_shown() {
 
 #[test]
 fn order_statistics_are_replaced_by_their_values() {
-    // Those asked for, each once, in ascending order.
+    // Those wanted, each once, in ascending order.
     let values = |percents: &[f64]| {
         assert_eq!(percents, [1.0, 99.5]);
         vec![7.0, 40.0]
@@ -286,7 +286,7 @@ fn order_statistics_are_replaced_by_their_values() {
         ["lmip-threshold = p1 is 7", "window = p99.5,p1 is 40,7"]
     );
     assert!(options.resolve(&SUBJECT).is_ok());
-    // The controls: a share of the range is none, and nothing is asked for where none is named.
+    // The controls: a share of the range is none, and nothing is wanted where none is named.
     let share = file("iso = '50%'");
     let of_share = share.clone().measured(SUBJECT.range, |_| unreachable!());
     assert_eq!(of_share, (share, vec![]));

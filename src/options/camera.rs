@@ -5,11 +5,14 @@ use glam::DVec3;
 use super::carm::CArm;
 use super::group::group;
 use super::quantities::{AngleDeg, Zoom};
+use super::text_form::text_form;
 use super::triple::Triple;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::scene::{Camera, FovDeg, HeightMm, Lens, Orientation, View, fit_distance_mm};
 use crate::subject::Subject;
+
+text_form!(FovDeg, HeightMm, View);
 
 group! {
     /// Where the eye is and how it looks. Lengths in mm, world space LPS.

@@ -1,8 +1,11 @@
 //! Clip options: where the volume is cut open.
 
 use super::group::group;
+use super::text_form::text_form;
 use crate::error::{Error, Result};
 use crate::scene::ClipPlane;
+
+text_form!(ClipPlane);
 
 group! {
     /// Where the volume is cut open.

@@ -3,12 +3,25 @@
 use super::enum_names::{GradientMethod, Shading, Switch};
 use super::group::group;
 use super::quantities::{GradientScale, SigmaVoxels};
+use super::text_form::text_form;
 use super::threshold::{Threshold, WindowEnds};
 use super::transfer_choice::TransferChoice;
 use crate::scene::{
     HomogeneityLimit, HomogeneityRule, Light, Mode, Quadrature, Refine, Reflectance, Shininess,
     SrgbColor, Termination, TransferFile, TransferUnits,
 };
+
+text_form!(
+    HomogeneityLimit,
+    HomogeneityRule,
+    Light,
+    Mode,
+    Quadrature,
+    Refine,
+    Reflectance,
+    Shininess,
+    Termination
+);
 
 group! {
     /// What is shown.

@@ -39,3 +39,57 @@ impl SceneOptions {
         !together.allows(need) && (is_decided || file.meets(need))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::rules::CONTRADICTIONS;
+
+    fn parse(text: &str) -> SceneOptions {
+        SceneOptions::parse(text, "scene").unwrap()
+    }
+
+    /// Of two options that contradict each other the flag wins, whichever it is.
+    #[test]
+    fn a_flag_wins_over_what_contradicts_it_in_a_file() {
+        let eye = "eye = [9, -40, 3]";
+        let carm = "carm = 'LAO 30'";
+        let averaged = "mode = 'dvr'\nhomogeneity = 0.1";
+        let pairs = [
+            ("fov = 40", "ortho = 20"),
+            (eye, "view = 'left'"),
+            (eye, carm),
+            (carm, "view = 'left'"),
+            (carm, "azimuth = 10"),
+            (carm, "elevation = 10"),
+            (averaged, "mode = 'dvr'\nshading = 'phong'"),
+            (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
+        ];
+        let mut met = vec![0; CONTRADICTIONS.len()];
+        for (one, other) in pairs {
+            let (one, other) = (parse(one), parse(other));
+            for (flags, file) in [(&one, &other), (&other, &one)] {
+                let merged = flags.clone().over(file.clone());
+                assert_eq!(merged.check_rules(), Ok(()), "{flags:?} {file:?}");
+                // The flags themselves are all there.
+                assert_eq!(flags.clone().or(merged.clone()), merged);
+                // The control: in one source they are refused.
+                let together = flags.clone().or(file.clone());
+                assert!(together.check_rules().is_err(), "{flags:?} {file:?}");
+                for (row, count) in CONTRADICTIONS.iter().zip(&mut met) {
+                    *count += u32::from((row.is_in)(&together));
+                }
+            }
+        }
+        assert!(met.iter().all(|count| *count > 0), "{met:?}");
+    }
+
+    #[test]
+    fn what_no_flag_has_to_do_with_is_left_to_be_refused() {
+        let stray = parse("zoom = 2").over(parse("mode = 'mip'\niso = 10"));
+        assert!(stray.check_rules().is_err());
+        // The control: a flag that names a mode takes it away.
+        let mean = parse("mode = 'mean'").over(parse("mode = 'mip'\niso = 10"));
+        assert_eq!(mean.check_rules(), Ok(()));
+    }
+}

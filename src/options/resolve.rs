@@ -141,3 +141,91 @@ impl SceneOptions {
         toml::to_string(&table).map_err(refused)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Args;
+    use glam::DVec3;
+
+    use super::*;
+    use crate::extent::Range;
+    use crate::options::flag_names;
+    use crate::options::rules::{Group, rule};
+
+    const SUBJECT: Subject = Subject {
+        center_world: DVec3::new(1.0, 2.0, 3.0),
+        radius_mm: 10.0,
+        spacing_mm: DVec3::ONE,
+        range: Range {
+            min: -100.0,
+            max: 300.0,
+        },
+        robust_range: Range {
+            min: -100.0,
+            max: 300.0,
+        },
+        otsu: 42.5,
+        suggested_iso: 120.0,
+    };
+
+    fn scene(text: &str) -> Scene {
+        let options = SceneOptions::parse(text, "scene").unwrap();
+        options.checked().unwrap().resolve(&SUBJECT).unwrap().scene
+    }
+
+    #[test]
+    fn a_scene_of_a_mode_is_what_its_options_make() {
+        for mode in Mode::ALL {
+            let made = Scene::of_mode(mode, &SUBJECT).unwrap();
+            assert_eq!(made, scene(&format!("mode = '{mode}'")));
+        }
+    }
+
+    /// What a scene file has to say so that an option means something.
+    fn needed(option: &str) -> String {
+        let mut text = String::new();
+        let needs = rule(Group::Scene, option).map_or(&[][..], |rule| rule.needs);
+        for need in needs {
+            match need {
+                Need::Modes(modes, _) => text.push_str(&format!("mode = '{}'\n", modes[0])),
+                Need::Steps => text.push_str("sampling = 'fixed'\n"),
+                Need::Precomputed(_) => text.push_str("gradient = 'precomputed'\n"),
+                Need::Eye => text.push_str("eye = [9, -40, 3]\n"),
+                Need::Homogeneity => text.push_str("homogeneity = 0.1\n"),
+                _ => {}
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn the_defaults_that_helps_name_are_those_that_are_applied() {
+        let command = SceneOptions::augment_args(clap::Command::new("scene"));
+        let mut compared = Vec::new();
+        for argument in command.get_arguments() {
+            let option = &flag_names(&clap::Command::new("one").arg(argument.clone()))[0];
+            let help = argument.get_help().map(ToString::to_string);
+            let help = help.unwrap_or_default();
+            let Some((_, default)) = help.rsplit_once("[default: ") else {
+                continue;
+            };
+            let default = default.trim_end_matches(']');
+            // A value, or one before or behind what is said of it.
+            let before = default.split([';', ',']).next().unwrap_or_default();
+            let behind = default.split_once(", ").map_or("", |(_, value)| value);
+            let until = default.split(';').next().unwrap_or_default();
+            let values = [default, until, before, behind];
+            let needed = needed(option);
+            let with = |value: &&str| format!("{needed}{option} = '{value}'");
+            let parses = |value: &&&str| SceneOptions::parse(&with(value), "scene").is_ok();
+            // Any text names a type or a file.
+            let is_text = ["tf", "raw-type", "volume", "raw-size"].contains(&option.as_str());
+            let Some(value) = values.iter().find(parses).filter(|_| !is_text) else {
+                continue;
+            };
+            assert_eq!(scene(&with(value)), scene(&needed), "{option} {value}");
+            compared.push(option.clone());
+        }
+        assert!(compared.len() > 30, "{compared:?}");
+    }
+}

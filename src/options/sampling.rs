@@ -2,7 +2,10 @@
 
 use super::enum_names::Switch;
 use super::group::group;
+use super::text_form::text_form;
 use crate::scene::{Filter, Sampling, SamplingMethod, StepVoxels, Storage, Traverse};
+
+text_form!(Filter, SamplingMethod, StepVoxels, Storage, Traverse);
 
 group! {
     /// How rays are followed through the volume.

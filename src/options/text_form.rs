@@ -187,31 +187,6 @@ impl serde::Serialize for ImageSize {
     }
 }
 
-text_form!(
-    crate::scene::Brightness,
-    crate::scene::ClipPlane,
-    crate::scene::Contrast,
-    crate::scene::Filter,
-    crate::scene::FovDeg,
-    crate::scene::Gamma,
-    crate::scene::HeightMm,
-    crate::scene::HomogeneityLimit,
-    crate::scene::HomogeneityRule,
-    crate::scene::Light,
-    crate::scene::Mode,
-    crate::scene::Quadrature,
-    crate::scene::Refine,
-    crate::scene::Reflectance,
-    crate::scene::SamplingMethod,
-    crate::scene::Shininess,
-    crate::scene::SrgbColor,
-    crate::scene::StepVoxels,
-    crate::scene::Storage,
-    crate::scene::Termination,
-    crate::scene::Traverse,
-    crate::scene::View,
-);
-
 #[cfg(test)]
 mod tests {
     use serde::Deserialize;

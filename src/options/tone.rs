@@ -1,7 +1,10 @@
 //! Display options: from linear light to what a screen shows.
 
 use super::group::group;
+use super::text_form::text_form;
 use crate::scene::{Brightness, Contrast, Gamma, SrgbColor, Tone};
+
+text_form!(Brightness, Contrast, Gamma, SrgbColor);
 
 group! {
     /// The picture on a display; EXR and NPY never contain any of it.

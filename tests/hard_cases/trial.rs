@@ -10,7 +10,7 @@ use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{Picture, Scene, Traverse};
 use angioray::subject::Subject;
-use angioray::volume::{HardCase, Histogram, Volume, suggested_iso};
+use angioray::volume::{HardCase, Volume};
 
 use crate::common::{self, assert_sound, on_reference};
 use crate::limits::{DISPLACED, PROJECTED, WRONG_PIXELS, light};
@@ -196,17 +196,7 @@ fn wrong(
 
 /// The case's scenes as `angioray render` resolves them.
 pub fn resolved(case: &HardCase, member: usize, volume: &Volume) -> Vec<(String, Scene)> {
-    let histogram = Histogram::robust(volume, 1024);
-    let (center_world, radius_mm) = volume.bounding_sphere();
-    let subject = Subject {
-        center_world,
-        radius_mm,
-        spacing_mm: volume.geometry().spacing_mm(),
-        range: volume.range(),
-        robust_range: histogram.range,
-        otsu: histogram.otsu(),
-        suggested_iso: suggested_iso(&histogram),
-    };
+    let subject = Subject::of(volume);
     scenes(case, member, volume)
         .into_iter()
         .map(|hard| {

@@ -95,6 +95,12 @@ impl ImageSize {
     /// The most pixels: all layers of a picture then take a few GiB.
     pub const MAX_PIXELS: u64 = 1 << 26;
 
+    /// The size of a picture where none is given.
+    pub const DEFAULT: Self = Self {
+        width: 512,
+        height: 512,
+    };
+
     pub fn new(width: u32, height: u32) -> Result<Self> {
         let side = 1..=Self::MAX_SIDE_PX;
         if !side.contains(&width)

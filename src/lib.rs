@@ -1,6 +1,7 @@
 //! angioray: pictures from angiograms and other sparse scalar volumes, without a window.
 //!
-//! A volume file becomes a [`volume::Volume`]; a [`scene::Scene`] says what to look at and how;
+//! A volume file becomes a [`volume::Volume`]; a [`scene::Scene`] says what to look at and how, and
+//! [`options`] are how flags and scene files write one;
 //! [`render`] casts it on an OpenCL device, [`mod@reference`] in double precision on the host; both
 //! give a [`frame::Frame`], which is written as a picture. ARCHITECTURE.md draws the whole.
 
@@ -16,13 +17,16 @@ pub mod input;
 pub mod kept;
 pub mod lab;
 pub mod memory;
+mod number_text;
 pub mod octree;
+pub mod options;
 pub mod output;
 pub mod progress;
 pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod stop;
+pub mod subject;
 pub mod volume;
 
 pub use error::{Error, Result};

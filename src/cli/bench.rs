@@ -9,11 +9,12 @@ use crate::gpu::DeviceInfo;
 use crate::lab::bench::{
     Bench, Dataset, EXPERIMENTS, Experiment, Outcome, Preset, Protocol, Store,
 };
+use crate::number_text::concise;
+use crate::options::group::{Keys, group};
+use crate::options::rules::{Group, Need, unmet};
+use crate::options::text_form::one_or_more;
+use crate::options::{Count, FilePath, SceneFile, Switch, Threshold, VolumeOptions};
 use crate::progress::Progress;
-use crate::scene::options::concise;
-use crate::scene::options::group::group;
-use crate::scene::options::plain::one_or_more;
-use crate::scene::{Count, FilePath, Switch, Threshold, VolumeOptions};
 use crate::volume::percentiles;
 
 use super::engine::{DeviceOptions, Engine};
@@ -84,7 +85,7 @@ group! {
         peer: String,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
-        /// pictures; made where there is none. It fills as the work proceeds: the same command resumes
+        /// pictures; made where there is none. It fills during the work: the same command resumes
         /// a run that was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
@@ -188,20 +189,8 @@ impl BenchArguments {
     /// Merges the flags with the scene file.
     fn merged(self) -> Result<(BenchOptions, DeviceOptions)> {
         let file = self.scene.open()?;
-        let mut of_file = file.group::<BenchOptions>()?;
-        of_file.output = of_file.output.map(|path| file.named_here(path));
-        let named_here = |volumes: Vec<FilePath>| {
-            let volumes = volumes.into_iter();
-            volumes.map(|volume| file.named_here(volume)).collect()
-        };
-        of_file.volumes = of_file.volumes.map(named_here);
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
-        if is_on(self.bench.quick) || is_on(self.bench.full) {
-            // Either flag says all that a file says by both keys.
-            (of_file.quick, of_file.full) = (None, None);
-        }
-        Ok((self.bench.over(of_file), device))
+        let options = self.bench.over_file(BenchOptions::of_file(&file)?);
+        Ok((options, self.device.over_file(file.group()?)))
     }
 }
 
@@ -210,6 +199,29 @@ fn is_on(switch: Option<Switch>) -> bool {
 }
 
 impl BenchOptions {
+    /// Takes the options from a scene file; the files that it names are relative to it.
+    fn of_file(file: &SceneFile) -> Result<Self> {
+        let options = file.group::<Self>()?;
+        let named_here = |volumes: Vec<FilePath>| {
+            let volumes = volumes.into_iter();
+            volumes.map(|volume| file.named_here(volume)).collect()
+        };
+        Ok(Self {
+            output: options.output.map(|path| file.named_here(path)),
+            volumes: options.volumes.map(named_here),
+            ..options
+        })
+    }
+
+    /// Lays these flags over a scene file's options: --quick or --full says all that a file says by both
+    /// keys.
+    fn over_file(self, mut file: Self) -> Self {
+        if is_on(self.quick) || is_on(self.full) {
+            (file.quick, file.full) = (None, None);
+        }
+        self.over(file)
+    }
+
     fn experiment(&self) -> Result<&'static Experiment> {
         let Some(name) = &self.experiment else {
             let names: Vec<&str> = EXPERIMENTS.iter().map(|one| one.name).collect();
@@ -224,45 +236,48 @@ impl BenchOptions {
     }
 
     /// Checks that every option has an effect in the experiment.
+    ///
+    /// # Errors
+    /// Usage: one has none.
     fn check(&self, experiment: &Experiment) -> Result<()> {
-        let name = self.experiment.as_deref().unwrap_or(experiment.name);
-        if !self.volumes().is_empty() && !experiment.takes_volumes {
+        let name = experiment.name;
+        let has_volumes = !self.volumes().is_empty();
+        if has_volumes && !experiment.takes_volumes {
             return Err(Error::usage(format!(
                 "the experiment '{name}' takes no volumes: it makes its own"
             )));
         }
-        let without_effect = |flag: &str, why: &str| {
-            Err(Error::usage(format!(
-                "'{flag}' has no effect in the experiment '{name}'{why}"
-            )))
+        let is_met = |need| match need {
+            Need::AimedRays => experiment.counts_rays,
+            Need::TimedFrames => experiment.times_frames,
+            Need::Rounds => experiment.takes_peer,
+            Need::Volumes => has_volumes,
+            // To forget nothing needs no folder.
+            Need::ResultsFolder => self.output.is_some() || !is_on(self.restart),
+            _ => true,
         };
-        const NO_FRAMES: &str = ", which times no frames, or moves the camera in its own way";
-        for (flag, is_given, has_effect, why) in [
-            ("--rays", self.rays.is_some(), experiment.counts_rays, ""),
-            ("--seed", self.seed.is_some(), experiment.counts_rays, ""),
-            (
-                "--protocol",
-                self.protocol.is_some(),
-                experiment.times_frames,
-                NO_FRAMES,
-            ),
-            ("--frames", self.frames.is_some(), experiment.takes_peer, ""),
-            ("--peer", self.peer.is_some(), experiment.takes_peer, ""),
-        ] {
-            if is_given && !has_effect {
-                return without_effect(flag, why);
+        let Some((option, need)) = unmet(Group::Bench, &self.given(), is_met) else {
+            return Ok(());
+        };
+        Err(match need {
+            Need::TimedFrames => Error::usage(format!(
+                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
+            )),
+            Need::Volumes => Error::usage(format!("'--{option}' has no effect without a volume"))
+                .hint("name the volumes that it is meant for"),
+            Need::ResultsFolder => {
+                Error::usage(format!("'--{option}' has no effect without '--output'"))
             }
-        }
-        if self.iso.is_some() && self.volumes().is_empty() {
-            return Err(Error::usage("'--iso' has no effect without a volume")
-                .hint("name the volumes that it is meant for"));
-        }
-        if is_on(self.restart) && self.output.is_none() {
-            return Err(Error::usage("'--restart' has no effect without '--output'"));
-        }
-        Ok(())
+            _ => Error::usage(format!(
+                "'--{option}' has no effect in the experiment '{name}'"
+            )),
+        })
     }
 
+    /// How thoroughly to measure.
+    ///
+    /// # Errors
+    /// Usage: both --quick and --full.
     fn preset(&self) -> Result<Preset> {
         match (is_on(self.quick), is_on(self.full)) {
             (true, true) => {

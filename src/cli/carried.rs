@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::frame::{Format, carrier, read_metadata};
-use crate::scene::SceneFile;
+use crate::options::SceneFile;
 
 /// What a picture says of itself.
 pub struct Carried {

@@ -4,8 +4,8 @@ use clap::CommandFactory;
 use clap_complete::Shell;
 
 use crate::error::{Error, Result};
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
+use crate::options::group::group;
+use crate::options::text_form::readable;
 
 use super::scene::SceneArgument;
 use super::terminal::to_stdout;

@@ -9,12 +9,13 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::{Device, DeviceInfo};
 use crate::octree::Octree;
+use crate::options::group::{Keys, group};
+use crate::options::rules::{Group, Need, has_needs, unmet};
+use crate::options::text_form::readable;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
 use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
 use crate::volume::Volume;
 
 use super::load::{Source, ms_since};
@@ -44,14 +45,17 @@ group! {
 }
 
 impl DeviceOptions {
-    /// What of a scene file still applies when these are the flags: the reference has neither work
-    /// groups nor lanes.
-    pub fn keep_of(&self, mut file: Self) -> Self {
-        if self.device.as_ref().is_some_and(DeviceName::is_reference) {
-            file.work_group = None;
-            file.lanes = None;
-        }
-        file
+    /// Lays these flags over a scene file's options: what a device needs goes where the flag is the
+    /// reference.
+    pub fn over_file(self, file: Self) -> Self {
+        let kept = file.keeping(|option| has_needs(Group::Device, option, |need| self.meets(need)));
+        self.over(kept)
+    }
+
+    /// Whether the device named is one that has this.
+    fn meets(&self, need: Need) -> bool {
+        let is_reference = self.device.as_ref().is_some_and(DeviceName::is_reference);
+        need != Need::OpenCl || !is_reference
     }
 }
 
@@ -135,14 +139,11 @@ impl Engine {
     pub fn open(options: &DeviceOptions) -> Result<Self> {
         match &options.device {
             Some(name) if name.is_reference() => {
-                let refused = [
-                    ("--work-group", options.work_group.is_some()),
-                    ("--lanes", options.lanes.is_some()),
-                ];
-                match refused.into_iter().find(|(_, given)| *given) {
+                let given = options.given();
+                match unmet(Group::Device, &given, |need| options.meets(need)) {
                     None => Ok(Self::Reference),
-                    Some((flag, _)) => Err(Error::usage(format!(
-                        "'{flag}' is for OpenCL devices; the reference has none"
+                    Some((option, _)) => Err(Error::usage(format!(
+                        "'--{option}' is for OpenCL devices; the reference has none"
                     ))),
                 }
             }

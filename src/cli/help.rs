@@ -54,7 +54,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("compare", "configs", "Settings to compare in place of the built-in ones"),
     ("bench", "output", "A folder for the table and the report"),
     ("bench", "frames", "How often each mode is timed in the experiment speed"),
-    ("bench", "peer", "Another renderer to race in the experiment speed"),
+    ("bench", "peer", "Another renderer to time in the experiment speed"),
     ("bench", "restart", "Forget what a stopped run left in the folder"),
 ];
 

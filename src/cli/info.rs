@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::extent::Range;
+use crate::number_text::{concise, concise_within};
 use crate::octree::Octree;
-use crate::scene::options::group::group;
-use crate::scene::options::{concise, concise_within};
-use crate::scene::{SceneOptions, Switch, VolumeOptions};
+use crate::options::group::group;
+use crate::options::{SceneOptions, Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
 use super::carried::Carried;

@@ -1,9 +1,9 @@
-//! What every command that renders is told: the scene, the files, the device.
+//! What every command that renders is given: the scene, the files, the device.
 
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::scene::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
+use crate::options::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::volume::files_of;
 
 use super::engine::DeviceOptions;
@@ -60,10 +60,8 @@ impl JobArguments {
         let options = options.checked()?;
         tolerance.check(&options)?;
         let output = OutputOptions::of_file(file)?;
-        let output = self.output.keep_of(flag_mode, output);
-        let output = self.output.over(output);
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
+        let output = self.output.over_file(output, flag_mode);
+        let device = self.device.over_file(file.group()?);
 
         let source = Source::of(&options.volume)?;
         let scene_file = self.scene.path().map(Path::to_owned);

@@ -6,20 +6,15 @@ use std::time::Instant;
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
 use crate::octree::Leaf;
+use crate::options::{FilePath, NonFiniteRule, SceneOptions, SpacingMm, VolumeOptions};
 use crate::progress::Progress;
 use crate::render::check_volume;
-use crate::scene::{
-    FilePath, NonFiniteRule, SceneOptions, SigmaMm, SpacingMm, Subject, VolumeOptions,
-};
+use crate::subject::Subject;
 use crate::volume::{
     self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, percentiles,
-    suggested_iso,
 };
 
 use super::terminal::note;
-
-/// Bins of the histogram from which iso values are suggested.
-const BINS: usize = 1024;
 
 /// A volume and what was learnt on the way.
 pub struct Loaded {
@@ -76,7 +71,7 @@ impl Source {
                 non_finite,
                 raw,
             },
-            sigma_mm: options.smooth.map_or(0.0, SigmaMm::get),
+            sigma_mm: options.smooth.unwrap_or_default().get(),
         })
     }
 
@@ -94,7 +89,7 @@ impl Source {
         options
     }
 
-    /// The volume, smoothed where that is asked for. One that the device is too small for is refused before
+    /// The volume, smoothed where that is wanted. One that the device is too small for is refused before
     /// its voxels are read.
     ///
     /// # Errors
@@ -115,17 +110,8 @@ impl Source {
             volume = volume::smooth(&volume, self.sigma_mm, progress)?;
             smooth_ms = ms_since(began);
         }
-        let histogram = Histogram::robust(&volume, BINS);
-        let (center_world, radius_mm) = volume.bounding_sphere();
-        let subject = Subject {
-            center_world,
-            radius_mm,
-            spacing_mm: volume.geometry().spacing_mm(),
-            range: volume.range(),
-            robust_range: histogram.range,
-            otsu: histogram.otsu(),
-            suggested_iso: suggested_iso(&histogram),
-        };
+        let histogram = Subject::histogram(&volume);
+        let subject = Subject::with_histogram(&volume, &histogram);
         Ok(Loaded {
             volume,
             histogram,
@@ -143,7 +129,7 @@ impl Loaded {
         self.volume.content_hash().to_hex().to_string()
     }
 
-    /// The options, each order statistic of the voxels replaced by its value, which the user is told.
+    /// The options, each order statistic of the voxels replaced by its value, which is printed.
     pub fn measured(&self, options: SceneOptions) -> SceneOptions {
         let values = |percents: &[f64]| percentiles(&self.volume, percents);
         let (options, notes) = options.measured(self.subject.range, values);

@@ -31,8 +31,8 @@ use clap::error::ErrorKind;
 use clap::{FromArgMatches, Parser, Subcommand};
 
 use crate::error::{Error, Result};
-use crate::scene::Switch;
-use crate::scene::options::group::group;
+use crate::options::Switch;
+use crate::options::group::group;
 use crate::volume;
 
 /// Pictures from angiograms and other sparse scalar volumes, without a window
@@ -95,7 +95,7 @@ impl Command {
         match &self {
             Self::Orbit(_) | Self::Bench(_) => {}
             Self::Compare(_) => stopping::at_once(
-                "the results so far are in its folder, and the reference's pictures are kept",
+                "the results so far are in its folder, and the reference's pictures are cached",
             )?,
             _ => stopping::at_once("no file is left half-written")?,
         }

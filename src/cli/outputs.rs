@@ -7,10 +7,12 @@ use std::str::FromStr;
 use crate::batch::FrameNames;
 use crate::error::{Error, Result};
 use crate::frame::{AnimationFormat, BitDepth, Encoding, Format, Layer};
+use crate::options::group::{Keys, group};
+use crate::options::rules::{Group, Need, has_needs, unmet};
+use crate::options::text_form::readable;
+use crate::options::{FilePath, SceneFile};
 use crate::output::{check_folder, check_writable};
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
-use crate::scene::{FilePath, FrameCount, Mode, SceneFile};
+use crate::scene::{FrameCount, Mode};
 
 group! {
     /// The files that a rendering writes.
@@ -43,7 +45,7 @@ group! {
 }
 
 impl OutputOptions {
-    /// What a scene file says of the output; the files that it names are relative to it.
+    /// Takes the output options from a scene file; the files that it names are relative to it.
     pub fn of_file(file: &SceneFile) -> Result<Self> {
         let options = file.group::<Self>()?;
         Ok(Self {
@@ -53,23 +55,17 @@ impl OutputOptions {
         })
     }
 
-    /// What of a scene file still applies when these and this mode are the flags: another picture file
+    /// Lays these flags, and this mode among them, over a scene file's options: another picture file
     /// drops what its format cannot hold, another mode the layers that it does not have.
-    pub fn keep_of(&self, mode: Option<Mode>, mut file: Self) -> Self {
+    pub fn over_file(self, mut file: Self, mode: Option<Mode>) -> Self {
         if let Some(mode) = mode {
             file.aov = file.aov.and_then(|layers| layers.kept_in(mode));
         }
-        let Some(FilePath(path)) = &self.output else {
-            return file;
-        };
-        if AnimationFormat::from_path(path).is_some() {
-            (file.aov, file.bit_depth, file.quality) = (None, None, None);
-        } else if let Ok(format) = Format::from_path(path) {
-            file.aov = file.aov.filter(|_| format.carries_layers());
-            file.bit_depth = file.bit_depth.filter(|_| format == Format::Png);
-            file.quality = file.quality.filter(|_| format == Format::Jpeg);
+        if let Some(FilePath(path)) = &self.output {
+            file =
+                file.keeping(|option| has_needs(Group::Output, option, |need| holds(path, need)));
         }
-        file
+        self.over(file)
     }
 
     /// The file named by `--output`.
@@ -90,8 +86,9 @@ impl OutputOptions {
     /// A format that is not known, what it cannot hold, a layer that the mode does not have.
     pub fn encoding(&self, picture: &Path, mode: Mode) -> Result<Encoding> {
         let format = Format::from_path(picture)?;
-        if self.quality.is_some() && format != Format::Jpeg {
-            return Err(Error::usage("'--quality' is for .jpg files only"));
+        let is_met = |need| need != Need::Jpeg || format == Format::Jpeg;
+        if let Some((option, _)) = unmet(Group::Output, &self.given(), is_met) {
+            return Err(Error::usage(format!("'--{option}' is for .jpg files only")));
         }
         let encoding = Encoding {
             format,
@@ -132,6 +129,22 @@ impl OutputOptions {
     }
 }
 
+/// Whether a file of this name holds what an option needs; one of no known format is refused elsewhere.
+fn holds(path: &Path, need: Need) -> bool {
+    if AnimationFormat::from_path(path).is_some() {
+        return !matches!(need, Need::Layered | Need::Png | Need::Jpeg);
+    }
+    let Ok(format) = Format::from_path(path) else {
+        return true;
+    };
+    match need {
+        Need::Layered => format.carries_layers(),
+        Need::Png => format == Format::Png,
+        Need::Jpeg => format == Format::Jpeg,
+        _ => true,
+    }
+}
+
 /// What a rendering writes.
 pub struct Files {
     pub picture: PathBuf,
@@ -140,7 +153,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// That what is to be written can be, before hours of work, and replaces no input.
+    /// Checks that what is to be written can be, before hours of work, and replaces no input.
     pub fn check(&self, inputs: &[impl AsRef<Path>]) -> Result<()> {
         check(&self.picture, inputs)?;
         let Some(stats) = &self.stats else {

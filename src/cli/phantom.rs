@@ -10,11 +10,11 @@ use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, Type
 use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::lab::hardcases::HardCase;
+use crate::number_text::whole;
+use crate::options::group::{Keys, group};
+use crate::options::text_form::readable;
+use crate::options::{FilePath, SpacingMm, Switch};
 use crate::output::write_atomically;
-use crate::scene::options::group::{Keys, group};
-use crate::scene::options::plain::readable;
-use crate::scene::options::whole;
-use crate::scene::{FilePath, SpacingMm, Switch};
 use crate::volume::{PhantomKind, PhantomSpec, VesselTree, VoxelType, phantom, write_nrrd};
 
 use super::hardcase::{self, Chosen};

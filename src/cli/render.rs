@@ -8,8 +8,9 @@ use crate::error::Result;
 use crate::frame::{self, Frame, Wanted};
 use crate::lab::measure::Counts;
 use crate::lab::tolerance::{Choice, Cost, ToleranceStats};
+use crate::options::Resolved;
 use crate::render::GradientFigures;
-use crate::scene::{Resolved, SamplingMethod};
+use crate::scene::SamplingMethod;
 
 use super::engine::{Engine, Rendered};
 use super::job::{Job, JobArguments};

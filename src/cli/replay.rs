@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::VERSION;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Format, read_encoding};
-use crate::scene::options::group::group;
-use crate::scene::{FilePath, SceneOptions};
+use crate::options::group::group;
+use crate::options::{FilePath, SceneOptions};
 use crate::volume::files_of;
 
 use super::carried::Carried;
@@ -90,11 +90,9 @@ impl ReplayArguments {
             None => carried.scene_file().places(&stored),
         };
         let of_file = OutputOptions::of_file(&file)?;
-        let of_file = self.output.keep_of(Some(options.mode()), of_file);
-        let output = self.output.over(of_file);
+        let output = self.output.over_file(of_file, Some(options.mode()));
         let files = as_it_was(output.clone().files(options.mode())?, &output, &carried)?;
-        let device = self.device.keep_of(file.group()?);
-        let device = self.device.over(device);
+        let device = self.device.over_file(file.group()?);
         let engine = open(device.clone(), &carried)?;
 
         let mut inputs = vec![image];
@@ -140,7 +138,7 @@ fn as_it_was(mut files: Files, output: &OutputOptions, carried: &Carried) -> Res
     Ok(files)
 }
 
-/// What renders: what is asked for, else what rendered the picture, where it is here.
+/// What renders: what is requested, else what rendered the picture, where it is here.
 fn open(mut device: DeviceOptions, carried: &Carried) -> Result<Engine> {
     if device.device.is_some() {
         return Engine::open(&device);

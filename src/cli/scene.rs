@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 
 use crate::error::Result;
-use crate::scene::{SceneFile, flag_names};
+use crate::options::{SceneFile, flag_names};
 
 use super::carried::Carried;
 use super::{Arguments, Voice, terminal};

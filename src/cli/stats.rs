@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
 use crate::lab::measure::{Counts, host_peak_bytes};
 use crate::lab::tolerance::ToleranceStats;
+use crate::options::SceneOptions;
 use crate::output::write_atomically;
-use crate::scene::SceneOptions;
 use crate::volume::Volume;
 
 use super::terminal::write_json;

@@ -18,7 +18,7 @@ pub fn between_parts(part: &'static str, ended: ErrorKind) -> Result<()> {
             )),
             Signal::Second => error(&Error::new(
                 ended,
-                "stopped at once; what is finished is kept",
+                "stopped at once; what is finished stays",
             )),
         }
         ended

@@ -1,17 +1,18 @@
-//! `--max-error`: choosing, and telling the user.
+//! `--max-error`: choosing, and reporting the choice.
 
 use crate::error::Result;
 use crate::frame::Wanted;
 use crate::lab::tolerance::{self, Choice, SEED, Task};
-use crate::scene::{Camera, ErrorBound, SceneOptions};
+use crate::options::{ErrorBound, SceneOptions};
+use crate::scene::Camera;
 
 use super::engine::Caster;
 use super::load::Loaded;
 use super::progress::Bars;
 use super::terminal::note;
 
-/// The cheapest way of following rays that keeps a bound. The reference has but one way, which is
-/// what all errors are taken against: it needs no choice, whatever the bound. Told to the user.
+/// Chooses the cheapest way of following rays that keeps a bound, and prints the choice. The reference has
+/// but one way, which is what all errors are taken against: it needs no choice, whatever the bound.
 pub fn choose(
     bound: ErrorBound,
     options: &SceneOptions,

@@ -21,7 +21,7 @@ impl Lighting {
             to_viewer,
             to_light: match light {
                 Light::Headlight => to_viewer,
-                Light::Distant { toward_light } => toward_light,
+                Light::Distant { toward_light } => toward_light.unit(),
             },
         }
     }
@@ -46,16 +46,16 @@ impl Lighting {
                     n.dot((self.to_light + self.to_viewer).normalize_or_zero())
                 }
             };
-            cosine.max(0.0).powf(p.shininess)
+            cosine.max(0.0).powf(p.shininess.get())
         };
-        let body = p.ambient + p.diffuse * facing.max(0.0);
-        color.map(|c| c * body + p.specular * s)
+        let body = p.ambient.get() + p.diffuse.get() * facing.max(0.0);
+        color.map(|c| c * body + p.specular.get() * s)
     }
 
     /// A bound of any channel of [`Self::reflect`] for colours up to 1.
     pub fn brightest(&self) -> f64 {
         let p = &self.phong;
-        p.ambient.abs() + p.diffuse.abs() + p.specular.abs()
+        p.ambient.get() + p.diffuse.get() + p.specular.get()
     }
 }
 

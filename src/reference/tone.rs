@@ -8,8 +8,8 @@ pub fn display(color: [f64; 4], tone: &Tone) -> [f64; 4] {
     let channel = |c: usize| {
         let linear = color[c] + tone.background.0[c] * (1.0 - color[3]);
         let encoded = srgb_from_linear(linear);
-        let toned = (encoded - 0.5) * tone.contrast + 0.5 + tone.brightness;
-        toned.clamp(0.0, 1.0).powf(1.0 / tone.gamma)
+        let toned = (encoded - 0.5) * tone.contrast.get() + 0.5 + tone.brightness.get();
+        toned.clamp(0.0, 1.0).powf(1.0 / tone.gamma.get())
     };
     [channel(0), channel(1), channel(2), 1.0]
 }

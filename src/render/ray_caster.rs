@@ -87,11 +87,7 @@ impl<'a> RayCaster<'a> {
     }
 }
 
-fn found(
-    device: &Device,
-    hit: &Buffer<f32>,
-    layers: &DeviceLayers,
-) -> Result<Vec<FirstCrossing>> {
+fn found(device: &Device, hit: &Buffer<f32>, layers: &DeviceLayers) -> Result<Vec<FirstCrossing>> {
     let hit = hit.download(device)?;
     let counts = |layer| -> Result<Vec<u32>> {
         Ok(match layers.download(device, layer)? {
@@ -115,7 +111,7 @@ fn surface_cast(iso: StoredIso, caps: bool, sampling: &Sampling) -> SurfaceCast 
         iso: iso.value,
         step_mm: 0.0,
         caps: u32::from(caps),
-        refine: Refine::default().method.number(),
+        refine: Refine::default().method().number(),
         iterations: 0,
         traverse: sampling.skip.then_some(sampling.traverse).number(),
         probe: 0,

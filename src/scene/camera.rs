@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
-use super::view::sin_cos_deg;
+use super::FovDeg;
+use super::view::{Orientation, View, fit_distance_mm, sin_cos_deg};
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
+use crate::subject::Subject;
 
 /// How rays leave the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +28,8 @@ pub struct Ray {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     eye_world: DVec3,
+    target_world: DVec3,
+    up_given: DVec3,
     right: DVec3,
     up: DVec3,
     forward: DVec3,
@@ -33,6 +37,22 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// Constructs the camera of a named view that shows a whole volume, as the command line places it
+    /// where nothing else is given.
+    ///
+    /// # Errors
+    /// Usage: a volume without extent.
+    pub fn of_view(view: View, subject: &Subject, size: ImageSize) -> Result<Self> {
+        let orientation = Orientation::of(view);
+        let fov_deg = FovDeg::default().get();
+        let target = subject.center_world;
+        let distance_mm = fit_distance_mm(subject.radius_mm, fov_deg, size);
+        let eye = target + orientation.toward_eye * distance_mm;
+        Self::look_at(eye, target, orientation.up, Lens::Perspective { fov_deg })
+    }
+
+    /// Constructs a camera at an eye that looks at a target, `up` being upward in the picture.
+    ///
     /// # Errors
     /// Eye = target, `up` parallel to the view direction, anything not finite, a field of view
     /// outside (0, 180)°, a height that is not positive.
@@ -70,6 +90,8 @@ impl Camera {
         let right = right.normalize();
         Ok(Self {
             eye_world,
+            target_world,
+            up_given: up,
             right,
             up: right.cross(forward),
             forward,
@@ -89,6 +111,8 @@ impl Camera {
         let turned = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
         Self {
             eye_world: about_world + turned(self.eye_world - about_world),
+            target_world: about_world + turned(self.target_world - about_world),
+            up_given: turned(self.up_given),
             right: turned(self.right),
             up: turned(self.up),
             forward: turned(self.forward),
@@ -98,6 +122,16 @@ impl Camera {
 
     pub fn eye_world(&self) -> DVec3 {
         self.eye_world
+    }
+
+    /// Returns the point that was given for the picture's centre.
+    pub fn target_world(&self) -> DVec3 {
+        self.target_world
+    }
+
+    /// Returns the direction that was given as up: of any length, not at a right angle to the line of sight.
+    pub fn up_given(&self) -> DVec3 {
+        self.up_given
     }
 
     pub fn right(&self) -> DVec3 {

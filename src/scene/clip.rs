@@ -1,8 +1,12 @@
 //! Planes that cut the volume open.
 
+use std::fmt;
+use std::str::FromStr;
+
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
+use crate::number_text::numbers;
 
 /// A half-space that is kept: the points p (world, mm) with `n·p + d ≥ 0`, those of the plane
 /// itself included. The normal n points to the kept side and has any length (Yuan 2009, §3.4).
@@ -13,8 +17,8 @@ pub struct ClipPlane {
 }
 
 impl ClipPlane {
-    /// The most planes of a scene.
-    pub const MOST: usize = 64;
+    /// The maximum number of planes of a scene.
+    pub const MAX_COUNT: usize = 64;
 
     /// # Errors
     /// A normal without direction; a number that is not finite.
@@ -64,5 +68,28 @@ impl ClipPlane {
     fn scaled(self) -> (DVec3, f64) {
         let largest = self.normal_world.abs().max_element();
         (self.normal_world / largest, self.offset / largest)
+    }
+}
+
+impl FromStr for ClipPlane {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let wrong = || {
+            Error::usage(format!(
+                "'{text}' is not a clip plane: write nx,ny,nz,d, such as 0,0,1,-20 to keep z >= 20 mm"
+            ))
+        };
+        match numbers(text) {
+            Some([x, y, z, d]) => Self::new(DVec3::new(x, y, z), d),
+            None => Err(wrong()),
+        }
+    }
+}
+
+impl fmt::Display for ClipPlane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let DVec3 { x, y, z } = self.normal_world();
+        write!(f, "{x},{y},{z},{}", self.offset())
     }
 }

@@ -20,7 +20,7 @@ pub enum Gradient {
     Precomputed(Precomputed),
 }
 
-/// Central differences of the smoothed volume at every `scale`-th voxel, kept as directions
+/// Central differences of the smoothed volume at every `scale`-th voxel, stored as directions
 /// (Fuller et al. 2009, §3.2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precomputed {

@@ -1,5 +1,7 @@
 //! When a finest octree node counts as homogeneous, so that it is integrated in one step.
 
+use super::HomogeneityLimit;
+
 /// What `--homogeneity E` limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HomogeneityRule {
@@ -16,6 +18,6 @@ pub enum HomogeneityRule {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Homogeneity {
     pub rule: HomogeneityRule,
-    /// E, above 0 and at most 1.
-    pub limit: f64,
+    /// E: the limit of the error, or of the range.
+    pub limit: HomogeneityLimit,
 }

@@ -1,20 +1,26 @@
-//! What to look at and how: plain, validated data. No GPU, no volume.
+//! What to look at and how: plain, validated data. No GPU, no volume, no command line.
 //!
 //! Values (iso, window, thresholds, transfer function) are physical values of the volume; lengths
 //! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.
+//!
+//! [`Scene::of_mode`] makes a scene with every default in its place.
 
 mod camera;
 mod clip;
 mod color;
+pub(crate) mod enum_names;
 mod gradient;
 mod homogeneity;
 mod light;
-pub(crate) mod options;
+mod mode;
 mod path;
 mod picture;
 mod quadrature;
+pub(crate) mod quantities;
 mod sampling;
+mod srgb_color;
 pub(crate) mod toml_error;
+mod tone;
 mod transfer;
 mod transfer_file;
 mod view;
@@ -24,17 +30,25 @@ pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
 pub use gradient::{Gradient, Precomputed};
 pub use homogeneity::{Homogeneity, HomogeneityRule};
-pub use light::{Light, Phong, Reflection};
-pub use options::*;
+pub use light::{Direction, Light, Phong, Reflection};
+pub use mode::Mode;
 pub use path::{FrameCount, Orbit, OrbitAxis};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
+pub use quantities::{
+    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, Shininess,
+    StepVoxels, Termination,
+};
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse};
+pub use srgb_color::SrgbColor;
+pub use tone::Tone;
 pub use transfer::{Knot, TransferFunction};
 pub use transfer_file::{TransferFile, TransferUnits};
-pub use view::{Orientation, fit_distance_mm};
+pub use view::{Orientation, View, fit_distance_mm};
 
+use crate::error::Result;
 use crate::extent::ImageSize;
+use crate::subject::Subject;
 
 /// Everything that determines a picture of a given volume.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +56,7 @@ pub struct Scene {
     pub size: ImageSize,
     pub camera: Camera,
     pub picture: Picture,
-    /// At most [`ClipPlane::MOST`]: a ray sees what lies on the kept side of all.
+    /// At most [`ClipPlane::MAX_COUNT`]: a ray sees what lies on the kept side of all.
     pub clip_planes: Vec<ClipPlane>,
     pub sampling: Sampling,
     pub light: Light,
@@ -52,34 +66,38 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Constructs the scene of a mode as the command line makes it where nothing else is given: the whole
+    /// volume from the front.
+    ///
+    /// # Errors
+    /// As [`Camera::of_view`] and [`Picture::of_mode`].
+    pub fn of_mode(mode: Mode, subject: &Subject) -> Result<Self> {
+        let picture = Picture::of_mode(mode, subject)?;
+        let size = ImageSize::DEFAULT;
+        let sampling = Sampling {
+            method: match &picture {
+                Picture::Emission(medium) => medium.quadrature.sampling(),
+                _ => SamplingMethod::default(),
+            },
+            ..Sampling::default()
+        };
+        Ok(Self {
+            size,
+            camera: Camera::of_view(View::default(), subject, size)?,
+            picture,
+            clip_planes: Vec::new(),
+            sampling,
+            light: Light::default(),
+            gradient: Gradient::default(),
+            tone: Tone::default(),
+        })
+    }
+
     /// How this picture's rays are sampled: an integral's as its quadrature is.
     pub fn sampling_method(&self) -> SamplingMethod {
         match &self.picture {
             Picture::Emission(medium) => medium.quadrature.sampling(),
             Picture::Surface { .. } | Picture::Projection { .. } => self.sampling.method,
-        }
-    }
-}
-
-/// From linear light to a display picture. Never touches EXR or NPY.
-///
-/// In order: composite over `background`, encode as sRGB, `(v − ½)·contrast + ½ + brightness`,
-/// clamp to 0..1, `v^(1/gamma)`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tone {
-    pub background: Rgb,
-    pub brightness: f64,
-    pub contrast: f64,
-    pub gamma: f64,
-}
-
-impl Default for Tone {
-    fn default() -> Self {
-        Self {
-            background: Rgb::BLACK,
-            brightness: 0.0,
-            contrast: 1.0,
-            gamma: 1.0,
         }
     }
 }

@@ -4,9 +4,9 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use super::options::plain::readable;
-use super::options::{Resolved, Triple};
+use super::Camera;
 use crate::error::{Error, Result};
+use crate::number_text::numbers;
 
 /// What an orbit turns about: a line through the camera's target (`--axis`).
 ///
@@ -36,7 +36,7 @@ impl FromStr for OrbitAxis {
             "z" => return Ok(Self::World(DVec3::Z)),
             _ => {}
         }
-        let direction = text.parse::<Triple>().ok().map(|Triple(d)| d);
+        let direction = numbers(text).map(DVec3::from_array);
         let unit = direction.and_then(DVec3::try_normalize);
         unit.map(Self::World).ok_or_else(|| {
             Error::usage(format!(
@@ -46,25 +46,23 @@ impl FromStr for OrbitAxis {
     }
 }
 
-readable!(OrbitAxis);
-
-/// How many frames a path has (`--frames`): from 1 to [`FrameCount::MOST`].
+/// How many frames a path has (`--frames`): from 1 to [`FrameCount::MAX`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameCount(u32);
 
 impl FrameCount {
     /// Nine hours at 30 a second.
-    pub const MOST: u32 = 1_000_000;
+    pub const MAX: u32 = 1_000_000;
 
     /// # Errors
-    /// No frames, or more than [`Self::MOST`] (usage).
+    /// No frames, or more than [`Self::MAX`] (usage).
     pub fn new(frames: u32) -> Result<Self> {
-        if (1..=Self::MOST).contains(&frames) {
+        if (1..=Self::MAX).contains(&frames) {
             return Ok(Self(frames));
         }
         Err(Error::usage(format!(
             "an orbit of {frames} frames: there must be 1 to {}",
-            Self::MOST
+            Self::MAX
         )))
     }
 
@@ -80,43 +78,39 @@ impl FromStr for FrameCount {
         let frames = text.trim().parse().map_err(|_| {
             Error::usage(format!(
                 "'{text}' is not a number of frames: there must be 1 to {}",
-                Self::MOST
+                Self::MAX
             ))
         })?;
         Self::new(frames)
     }
 }
 
-readable!(FrameCount);
-
-/// A scene seen from all around: frame k of N is turned by k·degrees/N, so that a whole turn closes
+/// Cameras all around a scene: that of frame k of N is turned by k·degrees/N, so that a whole turn closes
 /// without a repeated frame.
 ///
 /// Turning is right-handed: about the camera's up the eye moves to the picture's right when
 /// positive, as with `--azimuth`.
 #[derive(Debug, Clone)]
 pub struct Orbit {
-    /// Frame 0.
-    first: Resolved,
+    first: Camera,
     axis: DVec3,
     degrees: f64,
     frames: FrameCount,
 }
 
 impl Orbit {
-    /// Around the target of `first`, which is frame 0; the camera of all `frames` of them would have
-    /// turned by `degrees`.
+    /// Constructs an orbit around the target of `first`, which is the camera of frame 0; over all `frames`
+    /// it turns by `degrees`.
     ///
     /// # Errors
-    /// An angle that is not finite (usage).
-    pub fn new(first: Resolved, axis: OrbitAxis, degrees: f64, frames: FrameCount) -> Result<Self> {
+    /// Usage: an angle that is not finite.
+    pub fn new(first: Camera, axis: OrbitAxis, degrees: f64, frames: FrameCount) -> Result<Self> {
         if !degrees.is_finite() {
             return Err(Error::usage("an orbit's angle must be finite"));
         }
-        let camera = &first.scene.camera;
         let axis = match axis {
-            OrbitAxis::Up => camera.up(),
-            OrbitAxis::Right => camera.right(),
+            OrbitAxis::Up => first.up(),
+            OrbitAxis::Right => first.right(),
             OrbitAxis::World(direction) => direction,
         };
         Ok(Self {
@@ -127,41 +121,32 @@ impl Orbit {
         })
     }
 
-    /// How many frames it has, numbered from 0.
+    /// Returns how many frames there are, numbered from 0.
     pub fn frames(&self) -> u32 {
         self.frames.get()
     }
 
-    /// Unit, world space.
+    /// Returns the unit direction, world space, about which the camera turns.
     pub fn axis(&self) -> DVec3 {
         self.axis
     }
 
-    /// By how much a frame is turned; frame `frames()`, which is not part of the orbit, by all of
+    /// Returns by how much a frame is turned; frame `frames()`, which is not part of the orbit, by all of
     /// its degrees.
     pub fn degrees_at(&self, frame: u32) -> f64 {
         f64::from(frame) * self.degrees / f64::from(self.frames())
     }
 
-    /// The scene as a frame sees it, everything but the eye and its up as in the first: what
-    /// rendering with this eye and up would make.
-    ///
-    /// # Errors
-    /// None, for what is a camera stays one when it is turned.
-    pub fn at(&self, frame: u32) -> Result<Resolved> {
-        let mut seen = self.first.clone();
-        let options = &mut seen.options.camera;
-        let Some(Triple(target)) = options.target else {
-            return Ok(seen);
-        };
-        let first = self.first.scene.camera;
-        let turned = first.turned(self.axis, target, self.degrees_at(frame));
-        // A whole turn leaves the options as they are too, to the last bit.
-        if turned != first {
-            options.eye = Some(Triple(turned.eye_world()));
-            options.up = Some(Triple(turned.up()));
-            seen.scene.camera = options.camera()?;
+    /// Returns the camera of a frame: the one that looks from the turned eye at the same target.
+    pub fn camera(&self, frame: u32) -> Camera {
+        let target = self.first.target_world();
+        let turned = self.first.turned(self.axis, target, self.degrees_at(frame));
+        // A whole turn is no turn, to the last bit.
+        if turned == self.first {
+            return turned;
         }
-        Ok(seen)
+        let anew = Camera::look_at(turned.eye_world(), target, turned.up(), turned.lens());
+        // What is a camera stays one when it is turned.
+        anew.unwrap_or(turned)
     }
 }

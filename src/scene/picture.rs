@@ -2,8 +2,12 @@
 
 use crate::error::{Error, Result};
 use crate::extent::Range;
+use crate::subject::Subject;
 
-use super::{Homogeneity, Phong, Quadrature, Refine, Rgb, TransferFunction};
+use super::{
+    Homogeneity, Mode, Phong, Quadrature, Refine, Rgb, SrgbColor, Termination, TransferFile,
+    TransferFunction,
+};
 
 /// The kind of picture (`--mode`).
 #[derive(Debug, Clone, PartialEq)]
@@ -31,17 +35,15 @@ pub struct Emission {
     /// `None`: the transfer function's colours alone.
     pub phong: Option<Phong>,
     pub quadrature: Quadrature,
-    /// A ray ends where its opacity exceeds this, in (0, 1]; the colour lost is at most
+    /// A ray ends where its opacity exceeds this; the colour lost is at most
     /// (1 − termination) times the brightest colour.
-    pub termination: f64,
+    pub termination: Termination,
     /// `None`: every node that is not transparent is sampled. Not with shading, for normals differ
     /// within a node, nor with the adaptive quadrature, whose bound it would break.
     pub homogeneity: Option<Homogeneity>,
 }
 
 impl Emission {
-    pub const DEFAULT_TERMINATION: f64 = 0.999;
-
     /// The opacity from which a pixel has layers: a depth, a value, a normal, a kind.
     pub const LAYERS_FROM: f32 = 0.01;
 
@@ -51,19 +53,50 @@ impl Emission {
             transfer,
             phong: None,
             quadrature: Quadrature::default(),
-            termination: Self::DEFAULT_TERMINATION,
+            termination: Termination::default(),
             homogeneity: None,
         }
     }
 }
 
 impl Picture {
-    /// The mode's name on the command line.
-    pub fn mode(&self) -> &'static str {
+    /// Constructs the picture of a mode as the command line makes it where nothing else is given.
+    ///
+    /// # Errors
+    /// Usage: a range of values beyond single precision.
+    pub fn of_mode(mode: Mode, subject: &Subject) -> Result<Self> {
+        let projection = |of| {
+            let window = Window::of_range(subject.robust_range)?;
+            Ok(Self::Projection { of, window })
+        };
+        match mode {
+            Mode::Iso => Ok(Self::Surface {
+                iso: subject.suggested_iso,
+                caps: true,
+                refine: Refine::default(),
+                color: SrgbColor::IVORY.linear(),
+                phong: Some(Phong::default()),
+            }),
+            Mode::Mip => projection(Projection::Maximum),
+            Mode::Minip => projection(Projection::Minimum),
+            Mode::Mean => projection(Projection::Mean),
+            Mode::Lmip => projection(Projection::LocalMaximum {
+                threshold: subject.suggested_iso,
+            }),
+            Mode::Dvr => {
+                let preset = TransferFile::named(TransferFile::DEFAULT_PRESET)?;
+                let transfer = preset.transfer_function(subject.robust_range)?;
+                Ok(Self::Emission(Emission::of(transfer)))
+            }
+        }
+    }
+
+    /// Returns the kind of the picture.
+    pub fn mode(&self) -> Mode {
         match self {
-            Self::Surface { .. } => "iso",
+            Self::Surface { .. } => Mode::Iso,
             Self::Projection { of, .. } => of.mode(),
-            Self::Emission(_) => "dvr",
+            Self::Emission(_) => Mode::Dvr,
         }
     }
 }
@@ -82,12 +115,12 @@ pub enum Projection {
 }
 
 impl Projection {
-    pub fn mode(self) -> &'static str {
+    pub fn mode(self) -> Mode {
         match self {
-            Self::Maximum => "mip",
-            Self::Minimum => "minip",
-            Self::Mean => "mean",
-            Self::LocalMaximum { .. } => "lmip",
+            Self::Maximum => Mode::Mip,
+            Self::Minimum => Mode::Minip,
+            Self::Mean => Mode::Mean,
+            Self::LocalMaximum { .. } => Mode::Lmip,
         }
     }
 }
@@ -104,10 +137,10 @@ impl Window {
     /// # Errors
     /// The ends are the same value, or either is beyond single precision.
     pub fn new(black: f64, white: f64) -> Result<Self> {
-        let most = f64::from(f32::MAX);
-        if black.abs().max(white.abs()) > most {
+        let max = f64::from(f32::MAX);
+        if black.abs().max(white.abs()) > max {
             return Err(Error::usage(format!(
-                "the window {black:e},{white:e} reaches beyond what a picture's values can: {most:e}"
+                "the window {black:e},{white:e} reaches beyond what a picture's values can: {max:e}"
             )));
         }
         if !(black.is_finite() && white.is_finite() && black != white) {
@@ -118,7 +151,20 @@ impl Window {
         Ok(Self { black, white })
     }
 
-    /// The value shown black.
+    /// Constructs the window that shows a range of values; of a single value, one about it, which shows it
+    /// as middle grey.
+    ///
+    /// # Errors
+    /// Usage: a range beyond single precision.
+    pub fn of_range(range: Range) -> Result<Self> {
+        if range.min < range.max {
+            return Self::new(range.min, range.max);
+        }
+        let margin = f64::max(0.5, range.min.abs() * 1e-3);
+        Self::new(range.min - margin, range.max + margin)
+    }
+
+    /// Returns the value shown black.
     pub fn black(self) -> f64 {
         self.black
     }

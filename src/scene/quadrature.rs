@@ -44,17 +44,15 @@ impl QuadratureMethod {
 /// A rule and, where it takes one, its error bound: `METHOD[:BOUND]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadrature {
-    pub method: QuadratureMethod,
-    /// Of `Adaptive`: how far each channel of a pixel's premultiplied linear light, and its
-    /// opacity, may be off, early termination included. 0 for the others, which have none.
-    pub bound: f64,
+    method: QuadratureMethod,
+    bound: f64,
 }
 
 impl Quadrature {
     pub const BOUNDS: std::ops::RangeInclusive<f64> = 1e-5..=0.1;
     pub const DEFAULT_BOUND: f64 = 1e-3;
 
-    /// A rule with the bound that it has unless told.
+    /// Constructs a rule with its default bound.
     pub fn of(method: QuadratureMethod) -> Self {
         let bound = match method {
             QuadratureMethod::Adaptive => Self::DEFAULT_BOUND,
@@ -63,7 +61,36 @@ impl Quadrature {
         Self { method, bound }
     }
 
-    /// How the rule samples: at fixed steps, or wherever its bound needs it.
+    /// Constructs the adaptive rule with an error bound in [`Self::BOUNDS`].
+    ///
+    /// # Errors
+    /// Usage: a bound outside them.
+    pub fn adaptive(bound: f64) -> Result<Self> {
+        if !Self::BOUNDS.contains(&bound) {
+            return Err(Error::usage(format!(
+                "an error of {bound}: the adaptive quadrature takes {:e} to {}",
+                Self::BOUNDS.start(),
+                Self::BOUNDS.end()
+            )));
+        }
+        Ok(Self {
+            method: QuadratureMethod::Adaptive,
+            bound,
+        })
+    }
+
+    /// Returns the rule.
+    pub const fn method(self) -> QuadratureMethod {
+        self.method
+    }
+
+    /// Returns how far each channel of a pixel's premultiplied linear light, and its opacity, may be off
+    /// with the adaptive rule, early termination included; 0 with the others, which have no bound.
+    pub const fn bound(self) -> f64 {
+        self.bound
+    }
+
+    /// Returns how the rule samples: at fixed steps, or wherever its bound needs it.
     pub fn sampling(self) -> SamplingMethod {
         if self.is_stepped() {
             SamplingMethod::Fixed
@@ -92,9 +119,9 @@ impl FromStr for Quadrature {
             return text.parse().map(Self::of);
         };
         let method = name.parse()?;
-        let number = bound.parse().ok().filter(|b| Self::BOUNDS.contains(b));
-        match (method, number) {
-            (QuadratureMethod::Adaptive, Some(bound)) => Ok(Self { method, bound }),
+        let adaptive = bound.parse().ok().and_then(|b| Self::adaptive(b).ok());
+        match (method, adaptive) {
+            (QuadratureMethod::Adaptive, Some(adaptive)) => Ok(adaptive),
             _ => Err(Error::usage(format!(
                 "'{text}' is not a quadrature: :BOUND is adaptive's alone, an error from {:e} to {}",
                 Self::BOUNDS.start(),

@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use super::StepVoxels;
 use crate::error::{Error, Result};
 
 /// Reconstruction of Φ between voxel centres.
@@ -106,12 +107,42 @@ pub enum RefineMethod {
 /// A refiner and its number of iterations: `METHOD[:N]`, N from 1 to 32.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Refine {
-    pub method: RefineMethod,
-    pub iterations: u32,
+    method: RefineMethod,
+    iterations: u32,
 }
 
 impl Refine {
     pub const MAX_ITERATIONS: u32 = 32;
+
+    /// Constructs a refiner of so many iterations, from 1 to [`Self::MAX_ITERATIONS`]; `RefineMethod::None`
+    /// has 0.
+    ///
+    /// # Errors
+    /// Usage: another number of iterations.
+    pub fn new(method: RefineMethod, iterations: u32) -> Result<Self> {
+        let allowed = match method {
+            RefineMethod::None => 0..=0,
+            _ => 1..=Self::MAX_ITERATIONS,
+        };
+        if allowed.contains(&iterations) {
+            return Ok(Self { method, iterations });
+        }
+        Err(Error::usage(format!(
+            "{iterations} iterations of the refiner {method}: there must be {} to {}",
+            allowed.start(),
+            allowed.end()
+        )))
+    }
+
+    /// Returns how the root between two samples is found.
+    pub const fn method(self) -> RefineMethod {
+        self.method
+    }
+
+    /// Returns the number of iterations, 0 where nothing is refined.
+    pub const fn iterations(self) -> u32 {
+        self.iterations
+    }
 }
 
 impl Default for Refine {
@@ -144,13 +175,9 @@ impl FromStr for Refine {
             // Scharsach 2005, §4: six half-steps.
             (RefineMethod::Bisection, None) => 6,
             (_, None) => Self::default().iterations,
-            (_, Some(count)) => count
-                .parse()
-                .ok()
-                .filter(|n| (1..=Self::MAX_ITERATIONS).contains(n))
-                .ok_or_else(wrong)?,
+            (_, Some(count)) => count.parse().map_err(|_| wrong())?,
         };
-        Ok(Self { method, iterations })
+        Self::new(method, iterations).map_err(|_| wrong())
     }
 }
 
@@ -168,8 +195,8 @@ impl std::fmt::Display for Refine {
 pub struct Sampling {
     /// Of surfaces and projections.
     pub method: SamplingMethod,
-    /// In voxels of the smallest spacing, in [`Sampling::STEP_VOXELS`].
-    pub step_voxels: f64,
+    /// Distance of samples where they are at fixed steps.
+    pub step: StepVoxels,
     pub filter: Filter,
     pub traverse: Traverse,
     /// Whether nodes that cannot contribute are skipped; never changes the picture.
@@ -180,16 +207,11 @@ pub struct Sampling {
     pub voxels: Storage,
 }
 
-impl Sampling {
-    /// The steps that make sense: finer ones only cost, coarser ones miss everything.
-    pub const STEP_VOXELS: std::ops::RangeInclusive<f64> = 0.001..=100.0;
-}
-
 impl Default for Sampling {
     fn default() -> Self {
         Self {
             method: SamplingMethod::default(),
-            step_voxels: 0.5,
+            step: StepVoxels::default(),
             filter: Filter::Linear,
             traverse: Traverse::Distance,
             skip: true,

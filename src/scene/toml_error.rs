@@ -12,7 +12,7 @@ pub(crate) fn located(error: &toml::de::Error, text: &str, place: &str) -> Error
 }
 
 /// The line of a byte of `text`, counted from 1.
-pub(super) fn line(text: &str, byte: usize) -> usize {
+pub(crate) fn line(text: &str, byte: usize) -> usize {
     let before = &text.as_bytes()[..byte.min(text.len())];
     1 + before.iter().filter(|&&b| b == b'\n').count()
 }

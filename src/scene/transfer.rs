@@ -99,11 +99,11 @@ impl TransferFunction {
     /// rounding).
     #[must_use]
     pub fn moved(&self, moved: impl Fn(f64) -> f64) -> Self {
-        let mut least = f64::NEG_INFINITY;
+        let mut min = f64::NEG_INFINITY;
         let knots = self.knots.iter().map(|knot| {
-            least = moved(knot.value).max(least);
+            min = moved(knot.value).max(min);
             Knot {
-                value: least,
+                value: min,
                 ..*knot
             }
         });

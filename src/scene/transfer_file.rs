@@ -6,12 +6,12 @@ use std::path::Path;
 use serde::de::{self, DeserializeSeed, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::options::concise;
 use super::toml_error::located;
 use super::{Knot, Rgb, TransferFunction};
 use crate::error::{Error, Result};
 use crate::extent::Range;
 use crate::input;
+use crate::number_text::concise;
 
 /// A transfer function as it is written down: `points = [[value, r, g, b, opacity], …]`,
 /// ascending in value; r, g, b sRGB-encoded, they and the opacity in 0..1.

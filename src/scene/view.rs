@@ -2,8 +2,19 @@
 
 use glam::{DQuat, DVec3};
 
-use super::options::View;
 use crate::extent::ImageSize;
+
+/// The side of the patient on which the eye is (`--view`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum View {
+    #[default]
+    Anterior,
+    Posterior,
+    Left,
+    Right,
+    Superior,
+    Inferior,
+}
 
 /// Where the eye is as seen from the target, and what is up: both unit, orthogonal, world space
 /// (LPS).

@@ -13,6 +13,7 @@ mod read;
 mod robust;
 mod shortened;
 mod smooth;
+mod subject;
 mod tally;
 mod write_nrrd;
 

@@ -9,10 +9,12 @@ use angioray::frame::error::{color_error, depth_error, value_error};
 use angioray::frame::{Frame, Layer, Wanted, read_metadata};
 use angioray::lab::tolerance::{Choice, Task, candidates, choose};
 use angioray::octree::Octree;
+use angioray::options::{ErrorBound, ErrorMetric, SceneOptions};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{ErrorBound, ErrorMetric, Mode, SceneOptions, Subject};
+use angioray::scene::Mode;
+use angioray::subject::Subject;
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use cli_place::{Place, stderr};
 

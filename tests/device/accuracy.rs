@@ -12,7 +12,9 @@ use angioray::frame::{Frame, Wanted};
 use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Emission, Picture, Projection, Refine, Rgb, Scene, TransferFile, Window};
+use angioray::scene::{
+    Emission, Picture, Projection, Refine, Rgb, Scene, StepVoxels, TransferFile, Window,
+};
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 
 const SIZE_PX: u32 = 256;
@@ -36,7 +38,7 @@ impl Subject<'_> {
     fn scene(&self, picture: Picture, step_voxels: f64) -> Scene {
         let mut scene = common::scene(self.volume, SIZE_PX, picture);
         scene.camera = common::camera(self.volume, -common::OBLIQUE);
-        scene.sampling.step_voxels = step_voxels;
+        scene.sampling.step = StepVoxels::new(step_voxels).unwrap();
         scene
     }
 
@@ -114,7 +116,7 @@ impl Subject<'_> {
         let truth = self.truth(&scene);
         let mut error = |scene: &Scene| color_error(&truth, &self.frame(scene)).unwrap().max;
         let fine = error(&scene);
-        scene.sampling.step_voxels = 8.0;
+        scene.sampling.step = StepVoxels::new(8.0).unwrap();
         let coarse = error(&scene);
         let name = self.name;
         assert!(fine <= DVR_MAX, "{name}: {fine}");

@@ -7,8 +7,9 @@ use crate::common;
 use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
-    Camera, ClipPlane, Emission, Filter, Gradient, Knot, Lens, Light, Phong, Picture, Projection,
-    Quadrature, Reflection, Rgb, Scene, Tone, TransferFunction, Window,
+    Brightness, Camera, ClipPlane, Contrast, Emission, Filter, Gamma, Gradient, Knot, Lens, Light,
+    Phong, Picture, Projection, Quadrature, Reflection, Rgb, Scene, StepVoxels, Termination, Tone,
+    TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -341,7 +342,7 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
             Picture::Emission(Emission {
                 phong,
                 quadrature,
-                termination: 1.0,
+                termination: Termination::NEVER,
                 ..Emission::of(transfer)
             })
         }
@@ -360,18 +361,16 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
     scene.clip_planes = row.clip.iter().map(plane).collect();
     scene.gradient = row.gradient;
     scene.sampling.filter = row.filter;
-    scene.sampling.step_voxels = row.step_voxels;
+    scene.sampling.step = StepVoxels::new(row.step_voxels).unwrap();
     if let Some(toward) = row.toward_light {
-        scene.light = Light::Distant {
-            toward_light: DVec3::from_array(toward).normalize(),
-        };
+        scene.light = Light::distant(DVec3::from_array(toward).normalize()).unwrap();
     }
     let (brightness, contrast, gamma, background) = row.tone;
     scene.tone = Tone {
         background: Rgb(background),
-        brightness,
-        contrast,
-        gamma,
+        brightness: Brightness::new(brightness).unwrap(),
+        contrast: Contrast::new(contrast).unwrap(),
+        gamma: Gamma::new(gamma).unwrap(),
     };
     scene
 }

@@ -11,8 +11,8 @@ use angioray::gpu::Device;
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Homogeneity, HomogeneityRule, Knot, Phong, Picture, Quadrature, QuadratureMethod,
-    Refine, Rgb, TransferFile, TransferFunction,
+    Emission, Homogeneity, HomogeneityLimit, HomogeneityRule, Knot, Phong, Picture, Quadrature,
+    QuadratureMethod, Refine, Rgb, StepVoxels, Termination, TransferFile, TransferFunction,
 };
 use angioray::volume::{PhantomKind, PhantomSpec, ReadOptions, Volume, phantom, read};
 use common::{hash, volume_of};
@@ -56,7 +56,7 @@ fn change(
             ..emission.clone()
         });
         let mut scene = common::scene(volume, SIZE_PX, picture);
-        scene.sampling.step_voxels = 0.25;
+        scene.sampling.step = StepVoxels::new(0.25).unwrap();
         renderer.render(&scene, Wanted::ALL).unwrap().frame
     };
     let (plain, taken) = (render(None), render(Some(homogeneity)));
@@ -72,8 +72,17 @@ fn change(
 fn both(device: &Device, volume: &Volume, emission: &Emission, limit: f64) -> [Change; 2] {
     let octree = common::octree(volume);
     let mut renderer = Renderer::new(device, volume, &octree, Options::default()).unwrap();
-    [HomogeneityRule::Optical, HomogeneityRule::Range]
-        .map(|rule| change(&mut renderer, volume, emission, Homogeneity { rule, limit }))
+    [HomogeneityRule::Optical, HomogeneityRule::Range].map(|rule| {
+        change(
+            &mut renderer,
+            volume,
+            emission,
+            Homogeneity {
+                rule,
+                limit: HomogeneityLimit::new(limit).unwrap(),
+            },
+        )
+    })
 }
 
 /// The optical rule keeps its limit, also under a transfer function that is steep within a part of
@@ -85,7 +94,7 @@ fn judge(name: &str, volume: &Volume, steep: TransferFunction) {
     for quadrature in [QuadratureMethod::Simpson, QuadratureMethod::Preintegrated] {
         let emission = Emission {
             quadrature: Quadrature::of(quadrature),
-            termination: 1.0,
+            termination: Termination::NEVER,
             ..Emission::of(steep.clone())
         };
         for limit in [0.02, 0.1] {
@@ -166,7 +175,7 @@ fn samples_are_saved_in_what_is_the_same() {
         4.0,
     );
     let emission = Emission {
-        termination: 1.0,
+        termination: Termination::NEVER,
         ..Emission::of(mist)
     };
     for change in both(&device, &volume, &emission, 0.01) {
@@ -182,7 +191,10 @@ fn samples_are_saved_in_what_is_the_same() {
             &mut renderer,
             &volume,
             &emission,
-            Homogeneity { rule, limit },
+            Homogeneity {
+                rule,
+                limit: HomogeneityLimit::new(limit).unwrap(),
+            },
         )
         .saved
     };
@@ -234,7 +246,10 @@ fn averaging_nothing_or_little_takes_no_more_samples() {
                 continue;
             }
             let mut render = |limit: Option<f64>| {
-                let homogeneity = limit.map(|limit| Homogeneity { rule, limit });
+                let homogeneity = limit.map(|limit| Homogeneity {
+                    rule,
+                    limit: HomogeneityLimit::new(limit).unwrap(),
+                });
                 counted(&mut renderer, &volume, &emission, homogeneity)
             };
             let (off, fine, coarse) = (render(None), render(Some(1e-6)), render(Some(1.0)));
@@ -276,7 +291,7 @@ fn skipping_and_traversal_do_not_change_a_bit_of_it() {
     };
     let homogeneity = Homogeneity {
         rule: HomogeneityRule::Range,
-        limit: 0.05,
+        limit: HomogeneityLimit::new(0.05).unwrap(),
     };
     let mut render = |homogeneity, skip, traverse| {
         let mut scene = common::scene(&volume, 72, picture(homogeneity));
@@ -310,7 +325,7 @@ fn shading_and_the_adaptive_rule_are_refused() {
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let homogeneity = Some(Homogeneity {
         rule: HomogeneityRule::Optical,
-        limit: 0.1,
+        limit: HomogeneityLimit::new(0.1).unwrap(),
     });
     let plain = Emission {
         homogeneity,

@@ -10,7 +10,7 @@ use angioray::progress::Silent;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
     ClipPlane, Emission, Filter, Knot, Phong, Picture, Projection, Quadrature, QuadratureMethod,
-    Refine, Rgb, SamplingMethod, Storage, TransferFunction, Traverse, Window,
+    Refine, Rgb, SamplingMethod, Storage, Termination, TransferFunction, Traverse, Window,
 };
 use angioray::volume::Volume;
 use common::{hash, volume_of};
@@ -70,7 +70,7 @@ fn pictures(range_max: f64) -> Vec<Picture> {
     let emission = |phong| {
         Picture::Emission(Emission {
             phong,
-            termination: 0.99,
+            termination: Termination::new(0.99).unwrap(),
             ..Emission::of(transfer.clone())
         })
     };
@@ -347,7 +347,7 @@ fn of_all_types() -> Vec<(Volume, Vec<&'static str>)> {
 fn casts(volume: &Volume, modes: &[&str]) -> Vec<(Picture, SamplingMethod)> {
     let wanted = pictures(volume.range().max)
         .into_iter()
-        .filter(|picture| modes.contains(&picture.mode()));
+        .filter(|picture| modes.contains(&picture.mode().name()));
     let all_methods = modes.len() > 2;
     let by_methods = wanted.map(|picture| {
         if all_methods {

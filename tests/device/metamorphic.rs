@@ -7,7 +7,7 @@ use angioray::extent::{Dims, ImageSize};
 use angioray::frame::{DEPTH, Frame, KIND, NORMAL, VALUE};
 use angioray::scene::{
     Camera, Emission, Knot, Lens, Orientation, Phong, Picture, Projection, Refine, Rgb, Scene,
-    TransferFunction, View, Window,
+    StepVoxels, Termination, TransferFunction, View, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{AlphaMax, ColorMean, DepthMean, Kind, NormalMean};
@@ -68,7 +68,7 @@ fn pictures(unit_mm: f64) -> [Picture; 3] {
             window: Window::new(0.0, 255.0).unwrap(),
         },
         Picture::Emission(Emission {
-            termination: 1.0,
+            termination: Termination::NEVER,
             ..Emission::of(knots(60.0, 220.0, 0.4, unit_mm))
         }),
     ]
@@ -278,13 +278,13 @@ fn opacity_along(
     let eye = center + toward_eye * (2.0 * radius_mm);
     let scene = |&step_voxels: &f64| {
         let picture = Picture::Emission(Emission {
-            termination: 1.0,
+            termination: Termination::NEVER,
             ..Emission::of(transfer.clone())
         });
         let mut scene = common::scene(volume, 1, picture);
         scene.size = ImageSize::new(1, 1).unwrap();
         scene.camera = Camera::look_at(eye, center, up, lens).unwrap();
-        scene.sampling.step_voxels = step_voxels;
+        scene.sampling.step = StepVoxels::new(step_voxels).unwrap();
         scene
     };
     let scenes: Vec<Scene> = steps.iter().map(scene).collect();

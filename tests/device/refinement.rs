@@ -8,7 +8,7 @@ use angioray::frame::{DEPTH, STEPS, Wanted};
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
     Camera, Gradient, Lens, Light, Picture, Refine, RefineMethod, Rgb, Sampling, SamplingMethod,
-    Scene, Tone,
+    Scene, StepVoxels, Tone,
 };
 use angioray::volume::Volume;
 use common::volume_of;
@@ -71,7 +71,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         clip_planes: Vec::new(),
         sampling: Sampling {
             method: SamplingMethod::Fixed,
-            step_voxels: STEP_VOXELS,
+            step: StepVoxels::new(STEP_VOXELS).unwrap(),
             ..Sampling::default()
         },
         light: Light::default(),
@@ -117,7 +117,13 @@ fn bisection_and_regula_falsi_keep_their_bound() {
     let volume = rows(knee);
     let octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let mut with = |method, iterations| errors(&mut renderer, knee, Refine { method, iterations });
+    let mut with = |method, iterations| {
+        errors(
+            &mut renderer,
+            knee,
+            Refine::new(method, iterations).unwrap(),
+        )
+    };
 
     let (unrefined, unrefined_samples) = with(RefineMethod::None, 0);
     assert!(worst(&unrefined) <= STEP_VOXELS + 1e-5);
@@ -154,8 +160,16 @@ fn chords_and_tangents_beat_bisection_where_the_field_is_gentle() {
     let volume = rows(gentle);
     let octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let mut with =
-        |method, iterations| mean(&errors(&mut renderer, gentle, Refine { method, iterations }).0);
+    let mut with = |method, iterations| {
+        mean(
+            &errors(
+                &mut renderer,
+                gentle,
+                Refine::new(method, iterations).unwrap(),
+            )
+            .0,
+        )
+    };
     let bisection = with(RefineMethod::Bisection, 5);
     for method in [
         RefineMethod::RegulaFalsi,

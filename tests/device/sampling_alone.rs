@@ -6,7 +6,7 @@ use crate::common;
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Lanes, Options, Renderer, Sampled};
-use angioray::scene::{Picture, Projection, Scene, Window};
+use angioray::scene::{Picture, Projection, Scene, StepVoxels, Window};
 use angioray::volume::Volume;
 use glam::DVec3;
 
@@ -29,7 +29,7 @@ fn scene(volume: &Volume, toward_eye: DVec3) -> Scene {
     };
     let mut scene = common::scene(volume, 29, picture);
     scene.camera = common::camera(volume, toward_eye);
-    scene.sampling.step_voxels = STEP_MM;
+    scene.sampling.step = StepVoxels::new(STEP_MM).unwrap();
     scene
 }
 

@@ -5,7 +5,7 @@ use crate::common;
 use angioray::frame::{Frame, STEPS, Wanted};
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Knot, Picture, Quadrature, QuadratureMethod, Rgb, TransferFunction,
+    Emission, Knot, Picture, Quadrature, QuadratureMethod, Rgb, Termination, TransferFunction,
 };
 use common::volume_of;
 
@@ -23,7 +23,7 @@ fn mist_before_fog(method: QuadratureMethod, termination: f64) -> Picture {
     ];
     Picture::Emission(Emission {
         quadrature: Quadrature::of(method),
-        termination,
+        termination: Termination::new(termination).unwrap(),
         ..Emission::of(TransferFunction::new(knots, 1.0).unwrap())
     })
 }

@@ -10,7 +10,7 @@ use angioray::gpu::Device;
 use angioray::octree::Octree;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Camera, Filter, Lens, Picture, Projection, SamplingMethod, Scene, Storage, Window,
+    Camera, Filter, Lens, Picture, Projection, SamplingMethod, Scene, StepVoxels, Storage, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::{hash, volume_of};
@@ -166,7 +166,7 @@ fn in_the_middle(device: &Device, volume: &Volume, storage: Storage) -> Samples 
     let mut scene = from_above(volume, [width, height], DVec3::new(0.1, 0.0, 0.0));
     // Beside the cells' faces, where which cell a point is in would depend on rounding: 7.3 voxels from
     // above, in the middle of the first step.
-    scene.sampling.step_voxels = 7.3;
+    scene.sampling.step = StepVoxels::new(7.3).unwrap();
     scene.sampling.voxels = storage;
     let sampled = renderer.sample_field(&scene).unwrap();
     let top = SIDES[2] as f64 - 1.0;

@@ -1,6 +1,6 @@
 //! Emission and absorption: cases 16 to 21.
 
-use angioray::scene::{Homogeneity, HomogeneityRule, Picture, Quadrature};
+use angioray::scene::{Homogeneity, HomogeneityLimit, HomogeneityRule, Picture, Quadrature};
 use angioray::volume::{NonFinite, Rescale, Volume, Voxels};
 
 use crate::mutant::{Mutant, kernel};
@@ -299,7 +299,7 @@ fn false_homogeneous() {
         };
         emission.homogeneity = Some(Homogeneity {
             rule: HomogeneityRule::Range,
-            limit: 0.3,
+            limit: HomogeneityLimit::new(0.3).unwrap(),
         });
     });
     check(

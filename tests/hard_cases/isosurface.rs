@@ -1,7 +1,7 @@
 //! Isosurfaces: cases 7 to 15.
 
 use angioray::octree::Leaf;
-use angioray::scene::{SamplingMethod, Scene};
+use angioray::scene::{SamplingMethod, Scene, StepVoxels};
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use glam::DVec3;
 
@@ -89,7 +89,7 @@ const LOWEST_RAY: Mutant = kernel(
 /// The steps of the papers.
 fn fixed_steps(scene: &mut Scene) {
     scene.sampling.method = SamplingMethod::Fixed;
-    scene.sampling.step_voxels = 0.5;
+    scene.sampling.step = StepVoxels::new(0.5).unwrap();
     scene.sampling.probe = false;
 }
 

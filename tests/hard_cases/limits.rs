@@ -16,8 +16,8 @@ pub const PROJECTED: [(Figure, f64); 2] = [(Figure::Kind, 0.0), (Figure::ValueMa
 /// Of emissions, premultiplied linear light and opacity: the adaptive rule's own bound, of others,
 /// half a voxel a step, what that leaves out at the corners of the field.
 pub fn light(emission: &Emission) -> f64 {
-    match emission.quadrature.method {
-        QuadratureMethod::Adaptive => emission.quadrature.bound,
+    match emission.quadrature.method() {
+        QuadratureMethod::Adaptive => emission.quadrature.bound(),
         _ => 4e-3,
     }
 }

@@ -63,7 +63,7 @@ fn face_rays() {
     );
     fn outermost(seen: &Seen) -> Vec<String> {
         // Rays lie in the grid's planes: the picture's edge is the volume's.
-        let all = seen.scene.picture.mode() != "mip" || seen.hits() == seen.pixels();
+        let all = seen.scene.picture.mode().name() != "mip" || seen.hits() == seen.pixels();
         is("every ray meets the volume", all)
     }
     check("rays::face_rays", "face-rays", outermost, &[open]);

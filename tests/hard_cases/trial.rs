@@ -5,10 +5,12 @@ use angioray::gpu::Device;
 use angioray::lab::hardcases::HardCase;
 use angioray::lab::measure::{Answer, HitJudge, HitVerdict};
 use angioray::octree::{Leaf, Octree};
+use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Picture, Scene, SceneOptions, Subject, Traverse};
-use angioray::volume::{Histogram, Volume, suggested_iso};
+use angioray::scene::{Picture, Scene, Traverse};
+use angioray::subject::Subject;
+use angioray::volume::Volume;
 
 use crate::common::{self, assert_sound, on_reference};
 use crate::limits::{DISPLACED, PROJECTED, WRONG_PIXELS, light};
@@ -198,17 +200,7 @@ fn wrong(
 
 /// The case's scenes as `angioray render` resolves them.
 pub fn resolved(case: &HardCase, volume: &Volume) -> Vec<(String, Scene)> {
-    let histogram = Histogram::robust(volume, 1024);
-    let (center_world, radius_mm) = volume.bounding_sphere();
-    let subject = Subject {
-        center_world,
-        radius_mm,
-        spacing_mm: volume.geometry().spacing_mm(),
-        range: volume.range(),
-        robust_range: histogram.range,
-        otsu: histogram.otsu(),
-        suggested_iso: suggested_iso(&histogram),
-    };
+    let subject = Subject::of(volume);
     case.scenes(volume)
         .into_iter()
         .map(|hard| {

@@ -5,7 +5,9 @@ use angioray::lab::hardcases::{HardCase, orientation_of};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
-use angioray::scene::{Emission, Knot, Picture, Projection, Rgb, Scene, TransferFunction, Window};
+use angioray::scene::{
+    Emission, Knot, Picture, Projection, Rgb, Scene, Termination, TransferFunction, Window,
+};
 use angioray::volume::{Geometry, NonFinite, ReadOptions, Rescale, Volume, Voxels, read};
 use glam::{DMat3, DVec3};
 
@@ -148,7 +150,7 @@ fn pictures(surface: &Scene) -> [Scene; 3] {
     };
     let knots = vec![knot(60.0, 0.0), knot(220.0, 0.4)];
     let emission = Emission {
-        termination: 1.0,
+        termination: Termination::NEVER,
         ..Emission::of(TransferFunction::new(knots, 2.0).unwrap())
     };
     let maximum = Picture::Projection {

@@ -5,13 +5,25 @@ use std::path::Path;
 use crate::sources::{paths_at, sources};
 
 const GROUND: &[&str] = &[
-    "abrupt", "crash", "error", "extent", "input", "kept", "memory", "output", "progress", "stop",
+    "abrupt",
+    "crash",
+    "error",
+    "extent",
+    "input",
+    "kept",
+    "memory",
+    "number_text",
+    "output",
+    "progress",
+    "stop",
+    "subject",
 ];
 
 /// The instrument, from volume to picture.
 const INSTRUMENT: &[&str] = &[
     "volume",
     "scene",
+    "options",
     "frame",
     "gpu",
     "octree",
@@ -32,11 +44,14 @@ const MAY_USE: &[(&str, &[&[&str]])] = &[
     ("input", &[]),
     ("kept", &[]),
     ("memory", &[]),
+    ("number_text", &[]),
     ("output", &[]),
     ("progress", &[]),
     ("stop", &[]),
+    ("subject", &[]),
     ("volume", &[]),
     ("scene", &[]),
+    ("options", &[&["scene"]]),
     ("frame", &[]),
     ("gpu", &[]),
     ("octree", &[&["volume"]]),
@@ -44,7 +59,8 @@ const MAY_USE: &[(&str, &[&[&str]])] = &[
     ("batch", &[&["volume", "frame"]]),
     ("render", &[&["volume", "scene", "frame", "gpu", "octree"]]),
     ("lab::report", &[]),
-    ("lab::hardcases", &[&["volume", "scene"]]),
+    // Options only in its tests, which read its scenes.
+    ("lab::hardcases", &[&["volume", "scene", "options"]]),
     ("lab::measure", &[INSTRUMENT]),
     ("lab::tolerance", &[INSTRUMENT, MEASURE]),
     ("lab::bench", &[INSTRUMENT, MEASURE, &["lab::tolerance"]]),

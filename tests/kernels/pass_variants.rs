@@ -11,8 +11,9 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Gradient, Homogeneity, HomogeneityRule, Knot, Phong, Picture, Precomputed,
-    Projection, Quadrature, QuadratureMethod, Refine, Rgb, TransferFunction, Window,
+    Emission, Filter, Gradient, Homogeneity, HomogeneityLimit, HomogeneityRule, Knot, Phong,
+    Picture, Precomputed, Projection, Quadrature, QuadratureMethod, Refine, Rgb, Termination,
+    TransferFunction, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
@@ -40,7 +41,7 @@ fn pictures() -> Vec<Picture> {
         });
         pictures.push(Picture::Emission(Emission {
             phong,
-            termination: 0.99,
+            termination: Termination::new(0.99).unwrap(),
             ..Emission::of(transfer.clone())
         }));
     }
@@ -64,7 +65,7 @@ fn emissions() -> Vec<Picture> {
     let plain = Emission::of(TransferFunction::new(vec![knot], 1.0).unwrap());
     let homogeneity = Homogeneity {
         rule: HomogeneityRule::Optical,
-        limit: 0.1,
+        limit: HomogeneityLimit::new(0.1).unwrap(),
     };
     let mut emissions = Vec::new();
     for method in QuadratureMethod::ALL {

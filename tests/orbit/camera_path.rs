@@ -1,7 +1,9 @@
 //! An orbit: where its cameras are, and that it closes.
 
 use angioray::extent::Range;
-use angioray::scene::{FrameCount, Orbit, OrbitAxis, Resolved, SceneOptions, Subject};
+use angioray::options::{Resolved, SceneOptions};
+use angioray::scene::{FrameCount, Orbit, OrbitAxis};
+use angioray::subject::Subject;
 use glam::DVec3;
 
 fn subject() -> Subject {
@@ -27,9 +29,24 @@ fn seen(options: &str) -> Resolved {
     options.resolve(&subject()).unwrap()
 }
 
-fn orbit(options: &str, axis: &str, degrees: f64, frames: u32) -> Orbit {
+/// What is seen first, and from where.
+struct Frames {
+    first: Resolved,
+    orbit: Orbit,
+}
+
+impl Frames {
+    fn at(&self, frame: u32) -> Resolved {
+        self.first.seen_by(self.orbit.camera(frame))
+    }
+}
+
+fn orbit(options: &str, axis: &str, degrees: f64, frames: u32) -> Frames {
     let frames = FrameCount::new(frames).unwrap();
-    Orbit::new(seen(options), axis.parse().unwrap(), degrees, frames).unwrap()
+    let first = seen(options);
+    let axis = axis.parse().unwrap();
+    let orbit = Orbit::new(first.scene.camera, axis, degrees, frames).unwrap();
+    Frames { first, orbit }
 }
 
 /// How far two cameras are apart: their eyes in radii of the volume, and their directions.
@@ -57,17 +74,17 @@ fn an_orbit_closes_without_a_repeated_frame() {
         for axis in AXES {
             for (degrees, frames) in [(360.0, 7), (-720.0, 12), (360.0, 1)] {
                 let orbit = orbit(view, axis, degrees, frames);
-                let first = orbit.at(0).unwrap();
+                let first = orbit.at(0);
                 // Exactly: whoever renders frame N gets the bytes of frame 0.
-                let closing = orbit.at(frames).unwrap();
+                let closing = orbit.at(frames);
                 assert_eq!(closing.scene, first.scene, "{view} {axis}");
                 assert_eq!(closing.options, first.options, "{view} {axis}");
                 assert_eq!(first, seen(view), "{view} {axis}");
-                assert!(orbit.degrees_at(frames) == degrees);
+                assert!(orbit.orbit.degrees_at(frames) == degrees);
             }
             // No repeated frame, but where the axis is the line of sight the picture turns.
             let orbit = orbit(view, axis, 360.0, 8);
-            let frames: Vec<Resolved> = (0..8).map(|k| orbit.at(k).unwrap()).collect();
+            let frames: Vec<Resolved> = (0..8).map(|k| orbit.at(k)).collect();
             for a in 0..8 {
                 for b in 0..a {
                     assert!(apart(&frames[a], &frames[b]) > 0.1, "{view} {axis} {a} {b}");
@@ -82,10 +99,10 @@ fn the_camera_keeps_its_distance_target_and_lens() {
     for view in VIEWS {
         for axis in AXES {
             let orbit = orbit(view, axis, 360.0, 11);
-            let first = orbit.at(0).unwrap();
-            let target = first.options.camera.target.unwrap().0;
+            let first = orbit.at(0);
+            let target = first.scene.camera.target_world();
             for k in 0..11 {
-                let seen = orbit.at(k).unwrap();
+                let seen = orbit.at(k);
                 let camera = &seen.scene.camera;
                 let distance = |seen: &Resolved| seen.scene.camera.eye_world().distance(target);
                 assert!((distance(&seen) - distance(&first)).abs() < 1e-12 * distance(&first));
@@ -95,7 +112,7 @@ fn the_camera_keeps_its_distance_target_and_lens() {
                 // What lies on the axis stays where it is in the picture's depth.
                 let along = |seen: &Resolved| {
                     let eye = seen.scene.camera.eye_world();
-                    (eye - target).dot(orbit.axis())
+                    (eye - target).dot(orbit.orbit.axis())
                 };
                 assert!((along(&seen) - along(&first)).abs() < 1e-10);
                 // Everything but the camera is as it was.
@@ -111,21 +128,21 @@ fn the_camera_keeps_its_distance_target_and_lens() {
 fn about_up_it_turns_as_azimuth_does_and_about_z_as_a_c_arm() {
     for k in 0..9 {
         let degrees = 40 * k;
-        let about_up = orbit("elevation = 0", "up", 360.0, 9).at(k).unwrap();
+        let about_up = orbit("elevation = 0", "up", 360.0, 9).at(k);
         let named = seen(&format!("azimuth = {degrees}"));
         assert!(apart(&about_up, &named) < 1e-12, "{degrees}");
         // Raised, the eye stays as high about z.
-        let about_z = orbit("elevation = 20", "z", 360.0, 9).at(k).unwrap();
+        let about_z = orbit("elevation = 20", "z", 360.0, 9).at(k);
         let named = seen(&format!("azimuth = {degrees}\nelevation = 20"));
         assert!(apart(&about_z, &named) < 1e-12, "{degrees}");
     }
     // The controls: the other way round, and about the raised camera's own up, it is elsewhere.
-    let back = orbit("", "up", -360.0, 9).at(1).unwrap();
+    let back = orbit("", "up", -360.0, 9).at(1);
     assert!(apart(&back, &seen("azimuth = 40")) > 0.1);
-    let about_up = orbit("elevation = 20", "up", 360.0, 9).at(2).unwrap();
+    let about_up = orbit("elevation = 20", "up", 360.0, 9).at(2);
     assert!(apart(&about_up, &seen("azimuth = 80\nelevation = 20")) > 0.1);
     // About right the eye goes down first: right-handed, too.
-    let about_right = orbit("", "right", 360.0, 9).at(1).unwrap();
+    let about_right = orbit("", "right", 360.0, 9).at(1);
     assert!(apart(&about_right, &seen("elevation = -40")) < 1e-12);
 }
 
@@ -142,12 +159,12 @@ fn axes_and_numbers_that_make_no_orbit_are_refused() {
         assert_eq!(said.exit_code(), 2);
     }
     let three = "3".parse().unwrap();
-    let made = |degrees| Orbit::new(seen(""), OrbitAxis::Up, degrees, three);
+    let made = |degrees| Orbit::new(seen("").scene.camera, OrbitAxis::Up, degrees, three);
     for degrees in [f64::NAN, f64::INFINITY] {
         assert_eq!(made(degrees).unwrap_err().exit_code(), 2);
     }
     // The controls.
-    assert_eq!("1000000".parse(), FrameCount::new(FrameCount::MOST));
+    assert_eq!("1000000".parse(), FrameCount::new(FrameCount::MAX));
     assert_eq!(made(360.0).unwrap().frames(), 3);
     // A direction of any length.
     assert_eq!("0,0,7".parse(), Ok(OrbitAxis::World(DVec3::Z)));

@@ -4,7 +4,7 @@ use angioray::extent::{Dims, ImageSize};
 use angioray::reference::{Sight, Tracer};
 use angioray::scene::{
     Camera, Emission, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb,
-    Sampling, Scene, Tone, TransferFunction, Window,
+    Sampling, Scene, Termination, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DQuat, DVec3};
@@ -97,7 +97,7 @@ pub fn projection(of: Projection) -> Picture {
 pub fn dvr(transfer: TransferFunction, phong: Option<Phong>) -> Picture {
     Picture::Emission(Emission {
         phong,
-        termination: 0.5,
+        termination: Termination::new(0.5).unwrap(),
         ..Emission::of(transfer)
     })
 }

@@ -1,6 +1,8 @@
 //! Emission and absorption against closed forms, fine quadrature and brute force.
 
-use angioray::scene::{Knot, Light, Phong, Reflection, Rgb, TransferFunction};
+use angioray::scene::{
+    Knot, Light, Phong, Reflectance, Reflection, Rgb, Shininess, TransferFunction,
+};
 use angioray::volume::{Geometry, Volume};
 use glam::DVec3;
 
@@ -231,11 +233,13 @@ fn phong_by_the_book(phong: &Phong, c: [f64; 3], n: DVec3, v: DVec3, l: DVec3) -
         Reflection::BlinnPhong => n.dot((l + v).normalize()),
     };
     let s = if nl > 0.0 {
-        base.max(0.0).powf(phong.shininess)
+        base.max(0.0).powf(phong.shininess.get())
     } else {
         0.0
     };
-    c.map(|c| c * (phong.ambient + phong.diffuse * nl.max(0.0)) + phong.specular * s)
+    c.map(|c| {
+        c * (phong.ambient.get() + phong.diffuse.get() * nl.max(0.0)) + phong.specular.get() * s
+    })
 }
 
 fn bumpy() -> TransferFunction {
@@ -279,16 +283,14 @@ fn shaded_emission_agrees_with_brute_force() {
         let noise = random.noise(5, oblique(case % 2 == 0), 10.0);
         let phong = Phong {
             reflection: [Reflection::Phong, Reflection::BlinnPhong][case % 2],
-            shininess: 12.0,
+            shininess: Shininess::new(12.0).unwrap(),
             ..Phong::default()
         };
         let ray = random_ray(&mut random, &noise);
         let mut scene = scene(dvr(bumpy(), Some(phong)));
         let mut light = -(ray.1 - ray.0).normalize();
         if case >= 4 {
-            scene.light = Light::Distant {
-                toward_light: distant,
-            };
+            scene.light = Light::distant(distant).unwrap();
             light = distant;
         }
         let exact = cast_scene(&noise, &scene, ray.0, ray.1).color;
@@ -343,8 +345,8 @@ fn the_nearest_filter_composites_the_voxels_boxes() {
 fn sharp_highlights_between_the_nodes_are_found() {
     let mut random = Random(31);
     let phong = Phong {
-        shininess: 400.0,
-        specular: 1.0,
+        shininess: Shininess::new(400.0).unwrap(),
+        specular: Reflectance::new(1.0).unwrap(),
         ..Phong::default()
     };
     for _ in 0..40 {
@@ -368,9 +370,9 @@ fn a_normal_that_swings_round_in_a_moment_is_resolved() {
         (p.x - c).powi(2) + delta * p.y
     });
     let phong = Phong {
-        ambient: 0.0,
-        diffuse: 1.0,
-        specular: 0.0,
+        ambient: Reflectance::new(0.0).unwrap(),
+        diffuse: Reflectance::new(1.0).unwrap(),
+        specular: Reflectance::new(0.0).unwrap(),
         ..Phong::default()
     };
     let tf = transfer(&[knot(0.0, [1.0; 3], 0.5)], 1.0);

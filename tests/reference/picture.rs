@@ -6,7 +6,10 @@ use angioray::extent::ImageSize;
 use angioray::frame::{DEPTH, Frame, KIND, NODES, NORMAL, STEPS, VALUE, Wanted};
 use angioray::progress::{Progress, Silent};
 use angioray::reference::{render, render_pixels};
-use angioray::scene::{Camera, Lens, Light, Phong, Picture, Reflection, Rgb, Scene, Tone};
+use angioray::scene::{
+    Brightness, Camera, Contrast, Gamma, Lens, Light, Phong, Picture, Reflection, Rgb, Scene,
+    Shininess, Tone,
+};
 use angioray::volume::{Geometry, Volume};
 use glam::DVec3;
 
@@ -121,18 +124,13 @@ fn phong_and_blinn_phong_as_their_authors_wrote_them() {
     for reflection in [Reflection::Phong, Reflection::BlinnPhong] {
         let phong = Phong {
             reflection,
-            shininess: 5.0,
+            shininess: Shininess::new(5.0).unwrap(),
             ..Phong::default()
         };
         for (light, l) in [
             (Light::Headlight, v),
-            (Light::Distant { toward_light: side }, side),
-            (
-                Light::Distant {
-                    toward_light: DVec3::Y,
-                },
-                DVec3::Y,
-            ),
+            (Light::distant(side).unwrap(), side),
+            (Light::distant(DVec3::Y).unwrap(), DVec3::Y),
         ] {
             let (seen, n) = lit_pixel(phong, light);
             let nl = n.dot(l);
@@ -155,9 +153,9 @@ fn the_tone_curve_in_its_documented_order() {
     let mut scene = ball_scene(None);
     scene.tone = Tone {
         background: Rgb([0.25, 0.5, 1.0]),
-        brightness: 0.05,
-        contrast: 0.8,
-        gamma: 1.5,
+        brightness: Brightness::new(0.05).unwrap(),
+        contrast: Contrast::new(0.8).unwrap(),
+        gamma: Gamma::new(1.5).unwrap(),
     };
     let frame = picture(&scene);
     let display = frame.display.unwrap();

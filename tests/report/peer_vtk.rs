@@ -8,8 +8,8 @@ use angioray::frame::error::{color_error, depth_error};
 use angioray::frame::{Frame, Layer};
 use angioray::lab::measure::{Peer, PeerFrame, Readiness};
 use angioray::scene::{
-    Camera, Emission, Knot, Lens, Light, Phong, Picture, Projection, Refine, Rgb, Scene,
-    TransferFunction, Window,
+    Camera, Emission, Knot, Lens, Light, Phong, Picture, Projection, Refine, Reflectance, Rgb,
+    Scene, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::{DMat3, DVec3};
@@ -74,7 +74,7 @@ fn scenes(volume: &Volume) -> Vec<Scene> {
     ];
     let unlit = Emission::of(TransferFunction::new(knots, 1.0).unwrap());
     let matt = Phong {
-        specular: 0.0,
+        specular: Reflectance::new(0.0).unwrap(),
         ..Phong::default()
     };
     let lit = Emission {
@@ -97,9 +97,7 @@ fn scenes(volume: &Volume) -> Vec<Scene> {
         Picture::Emission(lit),
     ];
     let perspective = Lens::Perspective { fov_deg: 30.0 };
-    let distant = Light::Distant {
-        toward_light: DVec3::new(0.0, -0.6, 0.8),
-    };
+    let distant = Light::distant(DVec3::new(0.0, -0.6, 0.8)).unwrap();
     let views = [
         (perspective, Light::Headlight),
         (Lens::Orthographic { height_mm: 20.0 }, Light::Headlight),
@@ -132,7 +130,7 @@ fn a_real_peer_draws_what_the_reference_draws() {
     let mut drawn = 0;
     for scene in scenes(&volume) {
         let truth = common::on_reference(&volume, &scene);
-        for setting in peer.settings(scene.picture.mode()) {
+        for setting in peer.settings(scene.picture.mode().name()) {
             let ready = match peer.prepare(&volume, &scene, &setting).unwrap() {
                 Readiness::Ready(ready) => ready,
                 Readiness::Unsupported { why } => {

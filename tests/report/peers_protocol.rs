@@ -119,9 +119,7 @@ fn a_scene_is_told_in_stored_values_and_linear_light() {
     let mut emission = Emission::of(TransferFunction::new(knots, 3.0).unwrap());
     emission.phong = Some(Phong::default());
     let mut scene = scene_of(&volume, Picture::Emission(emission));
-    scene.light = Light::Distant {
-        toward_light: DVec3::X,
-    };
+    scene.light = Light::distant(DVec3::X).unwrap();
     let lens = Lens::Orthographic { height_mm: 30.0 };
     scene.camera = Camera::look_at(DVec3::NEG_Y * 9.0, DVec3::ZERO, DVec3::Z, lens).unwrap();
     for scene in [scene_of(&volume, maximum()), scene] {

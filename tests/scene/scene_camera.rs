@@ -1,7 +1,9 @@
 //! Camera options against cameras worked out by hand.
 
 use angioray::extent::Range;
-use angioray::scene::{Camera, Lens, SceneOptions, Subject};
+use angioray::options::SceneOptions;
+use angioray::scene::{Camera, Lens};
+use angioray::subject::Subject;
 use clap::Parser;
 use glam::DVec3;
 
@@ -26,7 +28,7 @@ fn camera(line: &[&str]) -> Camera {
     resolved(line).scene.camera
 }
 
-fn resolved(line: &[&str]) -> angioray::scene::Resolved {
+fn resolved(line: &[&str]) -> angioray::options::Resolved {
     let words = std::iter::once("angioray").chain(line.iter().copied());
     let flags = Flags::try_parse_from(words).unwrap_or_else(|e| panic!("{line:?}: {e}"));
     let resolved = flags.options.resolve(&SUBJECT);

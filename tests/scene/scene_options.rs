@@ -1,10 +1,9 @@
 //! Scene options: flags and scene files, alone and together, to a scene and back.
 
 use angioray::extent::{ImageSize, Range};
-use angioray::scene::{
-    Gradient, Lens, Picture, Precomputed, Projection, Resolved, SceneFile, SceneOptions, Subject,
-    Threshold, TransferChoice,
-};
+use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
+use angioray::scene::{Gradient, Lens, Picture, Precomputed, Projection};
+use angioray::subject::Subject;
 use clap::Parser;
 use glam::DVec3;
 
@@ -87,7 +86,7 @@ fn thresholds_are_values_shares_or_otsu() {
 }
 
 #[test]
-fn a_projection_shows_the_whole_range_unless_told() {
+fn a_projection_shows_the_whole_range_by_default() {
     let window = |line: &[&str]| match resolved(&flags(line)).scene.picture {
         Picture::Projection { window, .. } => (window.black(), window.white()),
         other => panic!("{other:?}"),
@@ -270,7 +269,7 @@ fn an_iso_value_outside_the_range_says_what_is_shown() {
 
 #[test]
 fn order_statistics_are_replaced_by_their_values() {
-    // Those asked for, each once, in ascending order.
+    // Those wanted, each once, in ascending order.
     let values = |percents: &[f64]| {
         assert_eq!(percents, [1.0, 99.5]);
         vec![7.0, 40.0]
@@ -287,7 +286,7 @@ fn order_statistics_are_replaced_by_their_values() {
         ["lmip-threshold = p1 is 7", "window = p99.5,p1 is 40,7"]
     );
     assert!(options.resolve(&SUBJECT).is_ok());
-    // The controls: a share of the range is none, and nothing is asked for where none is named.
+    // The controls: a share of the range is none, and nothing is wanted where none is named.
     let share = file("iso = '50%'");
     let of_share = share.clone().measured(SUBJECT.range, |_| unreachable!());
     assert_eq!(of_share, (share, vec![]));
@@ -308,7 +307,7 @@ fn a_flag_wins_over_the_file() {
     assert!(resolved(&merged).scene.camera.eye_world().x < 0.0);
     // What a flag rules out in the file goes with it.
     let mip = flags(&["--mode", "mip"]).over(file(scene));
-    assert_eq!(resolved(&mip).scene.picture.mode(), "mip");
+    assert_eq!(resolved(&mip).scene.picture.mode().name(), "mip");
     let eye = flags(&["--eye", "9,9,9"]).over(file(scene));
     assert_eq!(resolved(&eye).scene.camera.eye_world(), DVec3::splat(9.0));
     let ortho = flags(&["--ortho", "5"]).over(file(scene));
@@ -318,7 +317,7 @@ fn a_flag_wins_over_the_file() {
         let whole = resolved(&flags(line)).options;
         for mode in ["iso", "mip", "lmip", "minip", "mean", "dvr"] {
             let other = flags(&["--mode", mode, "--view", "left"]).over(whole.clone());
-            assert_eq!(resolved(&other).scene.picture.mode(), mode);
+            assert_eq!(resolved(&other).scene.picture.mode().name(), mode);
         }
     }
     // The control: within one source the same is nonsense.

@@ -1,9 +1,9 @@
-//! Which sampling a scene has: what is asked for, what that implies, and what goes with it.
+//! Which sampling a scene has: what is wanted, what that implies, and what goes with it.
 
 use angioray::extent::Range;
-use angioray::scene::{
-    Emission, Picture, QuadratureMethod, Resolved, SamplingMethod, SceneOptions, Subject,
-};
+use angioray::options::{Resolved, SceneOptions};
+use angioray::scene::{Emission, Picture, QuadratureMethod, SamplingMethod};
+use angioray::subject::Subject;
 use glam::DVec3;
 
 const SUBJECT: Subject = Subject {
@@ -37,13 +37,13 @@ fn method(text: &str) -> SamplingMethod {
 
 fn quadrature(options: &SceneOptions) -> QuadratureMethod {
     match resolved(options).scene.picture {
-        Picture::Emission(Emission { quadrature, .. }) => quadrature.method,
+        Picture::Emission(Emission { quadrature, .. }) => quadrature.method(),
         other => panic!("{other:?}"),
     }
 }
 
 #[test]
-fn sampling_is_exact_unless_steps_are_asked_for() {
+fn sampling_is_exact_unless_steps_are_wanted() {
     for exact in ["", "mode = 'mip'", "mode = 'lmip'", "sampling = 'exact'"] {
         assert_eq!(method(exact), SamplingMethod::Exact, "{exact}");
     }
@@ -58,15 +58,15 @@ fn sampling_is_exact_unless_steps_are_asked_for() {
 }
 
 #[test]
-fn steps_beside_exact_sampling_are_told_to_have_no_effect() {
-    let told = |text: &str| {
+fn steps_beside_exact_sampling_are_reported_to_have_no_effect() {
+    let reported = |text: &str| {
         let notes = resolved(&options(text)).notes;
         notes.iter().any(|note| note.contains("no effect"))
     };
-    assert!(told("sampling = 'exact'\nstep = 0.25"));
-    assert!(told("mode = 'dvr'\nquad = 'adaptive'\nstep = 0.25"));
-    assert!(!told("sampling = 'fixed'\nstep = 0.25"));
-    assert!(!told("sampling = 'exact'"));
+    assert!(reported("sampling = 'exact'\nstep = 0.25"));
+    assert!(reported("mode = 'dvr'\nquad = 'adaptive'\nstep = 0.25"));
+    assert!(!reported("sampling = 'fixed'\nstep = 0.25"));
+    assert!(!reported("sampling = 'exact'"));
 }
 
 #[test]

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::lab::compare::Folder;
-use crate::scene::options::group::Keys;
-use crate::scene::{ErrorBound, Mode, SceneOptions, TransferChoice};
+use crate::options::group::Keys;
+use crate::options::{ErrorBound, SceneOptions, TransferChoice};
+use crate::scene::Mode;
 use crate::volume::files_of;
 
 use super::super::load::Source;

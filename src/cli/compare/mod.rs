@@ -12,9 +12,10 @@ use crate::error::{Error, Result};
 use crate::lab::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_table};
 use crate::lab::measure::Peer;
 use crate::octree::Octree;
+use crate::options::{Count, ErrorBound, FilePath, SceneOptions, ToleranceOptions};
 use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
-use crate::scene::{Count, ErrorBound, FilePath, Mode, SceneOptions, ToleranceOptions};
+use crate::scene::Mode;
 
 use super::engine::{DeviceOptions, Engine};
 use super::load::{Loaded, Source, ms_since};
@@ -151,7 +152,7 @@ impl CompareArguments {
         let options = self.options.clone().over(options);
         // Beside settings that are given: the one that it chooses is a candidate like the others.
         let bound = self.tolerance.over(file.group()?).max_error;
-        let device = self.device.keep_of(file.group()?);
+        let device = self.device.over_file(file.group()?);
         let Some(FilePath(output)) = compare.output.clone() else {
             return Err(Error::usage("no folder for the comparison was named")
                 .hint("give it by '--output', or as 'output' in the scene file"));
@@ -170,7 +171,7 @@ impl CompareArguments {
             modes,
             configs,
             bound,
-            device: self.device.over(device),
+            device,
             scene_file: self.scene,
         })
     }

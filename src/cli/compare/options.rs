@@ -3,9 +3,10 @@
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
-use crate::scene::options::group::group;
-use crate::scene::options::plain::{one_or_more, readable};
-use crate::scene::{Count, FilePath, Mode, SceneFile, SceneOptions};
+use crate::options::group::group;
+use crate::options::text_form::{one_or_more, readable};
+use crate::options::{Count, FilePath, SceneFile, SceneOptions};
+use crate::scene::Mode;
 
 group! {
     /// What is compared, and where it goes.

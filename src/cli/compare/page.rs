@@ -88,7 +88,7 @@ pub fn report(
         summary: "Every picture here was drawn by several methods and compared with a reference that \
             solves the picture by its definition, in double precision. Points further down are \
             nearer to the reference, points further left are faster; the line joins the settings that \
-            are worth their time: nothing less wrong is as fast."
+            are worth their time: nothing more accurate is as fast."
             .into(),
         facts: facts
             .into_iter()

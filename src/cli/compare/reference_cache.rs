@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::kept;
 use crate::lab::measure::ReferenceCache;
-use crate::scene::FilePath;
+use crate::options::FilePath;
 use crate::volume::Volume;
 
 use super::super::terminal::note;

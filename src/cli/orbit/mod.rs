@@ -1,6 +1,7 @@
 //! `angioray orbit`.
 
 mod frame_record;
+mod frames;
 mod options;
 mod plan;
 mod runner;
@@ -8,7 +9,6 @@ mod stats;
 
 use crate::batch::Destination;
 use crate::error::Result;
-use crate::scene::Orbit;
 
 use super::engine::Engine;
 use super::job::JobArguments;
@@ -16,6 +16,7 @@ use super::progress::Bars;
 use super::render::{gradient_note, provenance};
 use super::stopping;
 use super::terminal::{message, note};
+use frames::Frames;
 use options::OrbitOptions;
 use plan::Plan;
 use runner::{OrbitOutcome, OrbitRunner};
@@ -60,7 +61,7 @@ impl OrbitArguments {
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;
-        let orbit = Orbit::new(resolved, plan.axis, plan.degrees, plan.frames)?;
+        let frames = Frames::new(resolved, &plan)?;
 
         let runner = OrbitRunner {
             plan: &plan,
@@ -71,9 +72,9 @@ impl OrbitArguments {
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();
-        let missing = runner.missing(&orbit, &mine)?;
+        let missing = runner.missing(&frames, &mine)?;
         let existing = mine.len() - missing.len();
-        let outcome = runner.make(orbit, &missing)?;
+        let outcome = runner.make(frames, &missing)?;
         stats::write(&runner, &outcome, existing)?;
         if let Some(stopped) = outcome.stopped {
             return Err(stopped);
@@ -115,7 +116,7 @@ fn report(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) -> 
     };
     let count = written.len();
     let render_ms: f64 = written.iter().map(|w| w.about.times_ms.render).sum();
-    let first = outcome.orbit.at(0)?;
+    let first = outcome.frames.first();
     message(format_args!(
         "wrote {files}: {count} frames{there}, {} {}, {:.1} ms each on {}",
         first.scene.picture.mode(),

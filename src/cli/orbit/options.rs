@@ -2,9 +2,10 @@
 
 use crate::batch::ShardChoice;
 use crate::frame::FrameRate;
-use crate::scene::options::group::group;
-use crate::scene::options::plain::readable;
-use crate::scene::{AngleDeg, FrameCount, OrbitAxis, Switch};
+use crate::options::group::group;
+use crate::options::text_form::readable;
+use crate::options::{AngleDeg, Switch};
+use crate::scene::{FrameCount, OrbitAxis};
 
 group! {
     /// How the camera turns, and which frames are made.
@@ -43,4 +44,4 @@ group! {
     }
 }
 
-readable!(FrameRate, ShardChoice);
+readable!(FrameCount, FrameRate, OrbitAxis, ShardChoice);

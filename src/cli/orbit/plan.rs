@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use crate::batch::{Destination, FinishedFrames, FrameNames, Shard, ShardChoice};
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{Animation, AnimationFormat, Encoding, Format};
+use crate::options::group::Keys;
+use crate::options::rules::{Group, Need, unmet};
+use crate::options::{AngleDeg, FilePath, Switch};
 use crate::output::becomes_file;
-use crate::scene::{AngleDeg, FilePath, FrameCount, OrbitAxis, Switch};
+use crate::scene::{FrameCount, OrbitAxis};
 
 use super::super::job::Job;
 use super::super::outputs;
@@ -140,10 +143,13 @@ fn destination(options: &OrbitOptions, job: &Job) -> Result<(Destination, Encodi
         })?;
         let encoding = job.output.encoding(path, job.options.mode())?;
         let names = FrameNames::of(path)?;
-        if options.fps.is_some() {
-            return Err(Error::usage(
-                "'--fps' is for animations only: pictures have no rate",
-            ));
+        let unmet = unmet(Group::Orbit, &options.given(), |need| {
+            need != Need::Animation
+        });
+        if let Some((option, _)) = unmet {
+            return Err(Error::usage(format!(
+                "'--{option}' is for animations only: pictures have no rate"
+            )));
         }
         let pictures = Destination::Pictures {
             names,

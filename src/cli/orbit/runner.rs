@@ -14,6 +14,7 @@ use super::super::load::Loaded;
 use super::super::progress::Bars;
 use super::super::tolerance::choose;
 use super::frame_record::FrameRecord;
+use super::frames::Frames;
 use super::plan::Plan;
 
 /// Frames on which a choice by `--max-error` is verified beside the first.
@@ -32,7 +33,7 @@ pub struct OrbitRunner<'a> {
 /// The frames that were made.
 pub struct OrbitOutcome {
     /// Under the setting that was chosen, where one was.
-    pub orbit: Orbit,
+    pub frames: Frames,
     pub chosen: Option<Choice>,
     pub written: Vec<Written<FrameRecord>>,
     /// Why the rest was not made.
@@ -40,9 +41,9 @@ pub struct OrbitOutcome {
 }
 
 impl OrbitOutcome {
-    fn nothing(orbit: Orbit, stopped: Option<Error>) -> Self {
+    fn nothing(frames: Frames, stopped: Option<Error>) -> Self {
         Self {
-            orbit,
+            frames,
             chosen: None,
             written: Vec::new(),
             stopped,
@@ -52,14 +53,14 @@ impl OrbitOutcome {
 
 impl OrbitRunner<'_> {
     /// The frames, of those of this process, that are not finished yet.
-    pub fn missing(&self, orbit: &Orbit, mine: &[u32]) -> Result<Vec<u32>> {
+    pub fn missing(&self, frames: &Frames, mine: &[u32]) -> Result<Vec<u32>> {
         if !self.plan.resume {
             return Ok(mine.to_vec());
         }
         self.bars.begin("looking", mine.len() as u64);
         let mut missing = Vec::new();
         for &index in mine {
-            let seen = orbit.at(index)?;
+            let seen = frames.at(index);
             let scene = seen.options.to_toml()?;
             // After a stop nothing is made, so that it does not matter which.
             let is_there = !stop::asked()
@@ -77,15 +78,15 @@ impl OrbitRunner<'_> {
     ///
     /// # Errors
     /// Anything but a stop between two pictures, which is part of what was made.
-    pub fn make(&self, mut orbit: Orbit, missing: &[u32]) -> Result<OrbitOutcome> {
+    pub fn make(&self, mut frames: Frames, missing: &[u32]) -> Result<OrbitOutcome> {
         if missing.is_empty() {
-            let nothing = OrbitOutcome::nothing(orbit, None);
-            self.join(&nothing.orbit)?;
+            let nothing = OrbitOutcome::nothing(frames, None);
+            self.join(&nothing.frames)?;
             return Ok(nothing);
         }
         let check = |chosen| self.check_stop(chosen, 0, missing.len());
         if let Err(stopped) = check(None) {
-            return Ok(OrbitOutcome::nothing(orbit, Some(stopped)));
+            return Ok(OrbitOutcome::nothing(frames, Some(stopped)));
         }
         self.plan.destination.make_folder()?;
         let (loaded, bars) = (self.loaded, self.bars);
@@ -93,19 +94,18 @@ impl OrbitRunner<'_> {
             .engine
             .prepare(&loaded.volume, &self.job.source, bars)?;
         let mut caster = self.engine.caster(&loaded.volume, &prepared)?;
-        let chosen = match stop::over_failure(self.choose(&orbit, &mut caster), || check(None)) {
+        let chosen = match stop::over_failure(self.choose(&frames, &mut caster), || check(None)) {
             Err(stopped) if stopped.kind() == ErrorKind::Stopped => {
-                return Ok(OrbitOutcome::nothing(orbit, Some(stopped)));
+                return Ok(OrbitOutcome::nothing(frames, Some(stopped)));
             }
             chosen => chosen?,
         };
         if let Some(choice) = &chosen {
-            let (plan, first) = (self.plan, choice.resolved.clone());
-            orbit = Orbit::new(first, plan.axis, plan.degrees, plan.frames)?;
+            frames = Frames::new(choice.resolved.clone(), self.plan)?;
         }
-        let (written, stopped) = self.write(&orbit, missing, chosen.as_ref(), &mut caster)?;
+        let (written, stopped) = self.write(&frames, missing, chosen.as_ref(), &mut caster)?;
         Ok(OrbitOutcome {
-            orbit,
+            frames,
             chosen,
             written,
             stopped,
@@ -113,10 +113,10 @@ impl OrbitRunner<'_> {
     }
 
     /// Writes an animation all of whose frames are finished.
-    fn join(&self, orbit: &Orbit) -> Result<()> {
+    fn join(&self, frames: &Frames) -> Result<()> {
         let destination = &self.plan.destination;
         if let Destination::Animation { .. } = destination {
-            let first = orbit.at(0)?;
+            let first = frames.first();
             let scene = first.options.to_toml()?;
             let none = &mut std::iter::empty::<Result<Shot<()>>>();
             destination.write(self.reel(&first.scene), self.from, &scene, none)?;
@@ -133,12 +133,12 @@ impl OrbitRunner<'_> {
     }
 
     /// What an error bound chooses, where there is one.
-    fn choose(&self, orbit: &Orbit, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
+    fn choose(&self, frames: &Frames, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
         let Some(bound) = self.job.bound else {
             return Ok(None);
         };
         let (options, wanted) = (&self.job.options, self.wanted());
-        let elsewhere = spread(orbit)?;
+        let elsewhere = spread(&frames.orbit);
         choose(
             bound,
             options,
@@ -159,12 +159,12 @@ impl OrbitRunner<'_> {
     /// being saved.
     fn write(
         &self,
-        orbit: &Orbit,
+        frames: &Frames,
         missing: &[u32],
         chosen: Option<&Choice>,
         caster: &mut Caster<'_>,
     ) -> Result<(Vec<Written<FrameRecord>>, Option<Error>)> {
-        let first = orbit.at(0)?;
+        let first = frames.first();
         let scene = first.options.to_toml()?;
         let reel = self.reel(&first.scene);
         let wanted = self.wanted();
@@ -174,7 +174,7 @@ impl OrbitRunner<'_> {
         let mut shot = |made: usize, index: u32| {
             let check = || self.check_stop(chosen, made, missing.len());
             check()?;
-            let seen = orbit.at(index)?;
+            let seen = frames.at(index);
             let rendered = caster.render(&seen.scene, wanted, &Silent);
             let rendered = stop::over_failure(rendered, check)?;
             self.bars.advance(1);
@@ -242,7 +242,7 @@ impl OrbitRunner<'_> {
 
 /// The cameras of frames spread over the orbit by the golden ratio: no two of them opposite
 /// each other, where projections are mirror images.
-fn spread(orbit: &Orbit) -> Result<Vec<Camera>> {
+fn spread(orbit: &Orbit) -> Vec<Camera> {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     let frames = f64::from(orbit.frames());
     let at = |k: u32| (frames * (f64::from(k) * GOLDEN).fract()) as u32;
@@ -250,7 +250,5 @@ fn spread(orbit: &Orbit) -> Result<Vec<Camera>> {
     spread.sort_unstable();
     spread.dedup();
     let frames = spread.into_iter().filter(|&frame| frame != 0);
-    frames
-        .map(|frame| Ok(orbit.at(frame)?.scene.camera))
-        .collect()
+    frames.map(|frame| orbit.camera(frame)).collect()
 }

@@ -20,7 +20,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
         return Ok(());
     };
     let written = &outcome.written;
-    let first = outcome.orbit.at(0)?;
+    let first = outcome.frames.first();
     let choosing = (outcome.chosen.as_ref()).map_or(Cost::default(), |choice| choice.cost);
     let max_device_bytes = written.iter().map(|w| w.about.device_bytes).max();
     let gradients = written.last().and_then(|w| w.about.gradients);
@@ -53,7 +53,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
         orbit: OrbitFigures {
             frames: plan.frames.get(),
             degrees: plan.degrees,
-            axis: outcome.orbit.axis().to_array(),
+            axis: outcome.frames.orbit.axis().to_array(),
             kept: existing,
             shard: plan.shard.to_string(),
         },
@@ -62,7 +62,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
             .filter_map(|w| {
                 Some(FrameStats {
                     index: w.index,
-                    degrees: outcome.orbit.degrees_at(w.index),
+                    degrees: outcome.frames.orbit.degrees_at(w.index),
                     render_ms: w.about.times_ms.render,
                     read_back_ms: w.about.times_ms.read_back,
                     encode_ms: w.encode_ms,

@@ -12,8 +12,8 @@ use crate::octree::{Leaf, Octree};
 use crate::progress::Silent;
 use crate::render::{Options, Renderer};
 use crate::scene::{
-    Camera, Emission, Knot, Lens, Picture, Quadrature, QuadratureMethod, Rgb, Scene,
-    TransferFunction,
+    Camera, Emission, Knot, Lens, Picture, Quadrature, QuadratureMethod, Rgb, Scene, StepVoxels,
+    Termination, TransferFunction,
 };
 use crate::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 
@@ -133,12 +133,12 @@ pub fn errors(
     let scene = |step: &f64| {
         let emission = Emission {
             quadrature: Quadrature::of(method),
-            termination: 1.0,
+            termination: Termination::NEVER,
             ..Emission::of(transfer()?)
         };
         let middle = DVec3::splat(0.5 * EDGE_MM);
         let mut scene = through(volume, middle, smooth.toward, emission)?;
-        scene.sampling.step_voxels = step * smooth.edges;
+        scene.sampling.step = StepVoxels::new(step * smooth.edges)?;
         Ok(scene)
     };
     let scenes: Vec<Scene> = steps.iter().map(scene).collect::<Result<_>>()?;

@@ -6,9 +6,9 @@ use rand_pcg::Pcg64;
 
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::scene::{
-    Emission, Knot, Picture, Rgb, Scene, SceneOptions, Setting, Subject, TransferFunction,
-};
+use crate::options::{SceneOptions, Setting};
+use crate::scene::{Emission, Knot, Picture, Rgb, Scene, TransferFunction};
+use crate::subject::Subject;
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };

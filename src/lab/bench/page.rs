@@ -58,7 +58,7 @@ fn facts(bench: &Bench, conditions: Conditions) -> Vec<(String, String)> {
     let device = bench.device.info();
     let volumes = bench.datasets.iter().map(|dataset| {
         let (dims, kind) = (dataset.volume.dims(), dataset.volume.voxels().voxel_type());
-        let iso = crate::scene::options::concise(dataset.iso);
+        let iso = crate::number_text::concise(dataset.iso);
         format!("{} ({dims} {}, iso {iso})", dataset.name, kind.name())
     });
     let volumes = match bench.datasets.is_empty() {

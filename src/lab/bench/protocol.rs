@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result};
+use crate::options::text_form::readable;
 use crate::scene::Scene;
-use crate::scene::options::plain::readable;
 
 use super::Preset;
 

@@ -6,7 +6,9 @@ use glam::DVec3;
 use super::rng::Rng;
 use crate::error::Result;
 use crate::extent::Dims;
-use crate::scene::{ErrorBound, ErrorMetric, Mode, SceneOptions, Subject};
+use crate::options::{ErrorBound, ErrorMetric, SceneOptions};
+use crate::scene::Mode;
+use crate::subject::Subject;
 use crate::volume::{PhantomKind, PhantomSpec, Volume, VoxelType, phantom};
 
 /// A random phantom of 24 to 64 voxels along each axis, its voxels a third of the time longer along

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::error::{Error, Result};
 use crate::lab::measure::{Peer, PeerScene};
-use crate::scene::Resolved;
+use crate::options::Resolved;
 
 use super::mode::ModeSettings;
 use super::row::Row;

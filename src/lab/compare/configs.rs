@@ -4,8 +4,9 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::input;
+use crate::options::{Part, SceneFile, SceneOptions, Setting};
+use crate::scene::Mode;
 use crate::scene::toml_error::located;
-use crate::scene::{Mode, Part, SceneFile, SceneOptions, Setting};
 
 /// What a file of settings says.
 ///

@@ -32,9 +32,11 @@ use crate::lab::measure::{
 };
 use crate::lab::report::{self, Gallery, Section};
 use crate::lab::tolerance::{Choice, SEED, Task, ToleranceStats, choose};
+use crate::options::{Resolved, SceneOptions, Setting};
 use crate::progress::{Progress, Stage};
 use crate::render::Renderer;
-use crate::scene::{Resolved, Scene, SceneOptions, Setting, Subject};
+use crate::scene::Scene;
+use crate::subject::Subject;
 use crate::volume::Volume;
 
 use candidate::{Candidate, candidates};

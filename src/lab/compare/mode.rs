@@ -2,7 +2,9 @@
 
 use crate::error::Result;
 use crate::lab::measure::built_in;
-use crate::scene::{ErrorBound, Mode, Resolved, SceneOptions, Setting, Subject};
+use crate::options::{ErrorBound, Resolved, SceneOptions, Setting};
+use crate::scene::Mode;
+use crate::subject::Subject;
 
 /// A mode, what is seen in it, and the settings in which it is rendered.
 #[derive(Debug, Clone)]

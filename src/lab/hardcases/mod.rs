@@ -52,7 +52,7 @@ impl HardCase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SceneOptions;
+    use crate::options::SceneOptions;
 
     #[test]
     fn every_case_is_made_and_all_numbers_but_the_loops_have_one() {

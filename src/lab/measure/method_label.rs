@@ -13,7 +13,7 @@ pub fn method_label(scene: &Scene) -> String {
         return "filtered".into();
     }
     match &scene.picture {
-        Picture::Emission(medium) => match medium.quadrature.method {
+        Picture::Emission(medium) => match medium.quadrature.method() {
             QuadratureMethod::Adaptive => "adaptive".into(),
             method => method.to_string(),
         },

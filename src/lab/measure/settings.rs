@@ -1,7 +1,8 @@
 //! The settings that are measured where the user names none, and the grid of them all.
 
 use crate::error::Result;
-use crate::scene::{Mode, Setting};
+use crate::options::Setting;
+use crate::scene::Mode;
 
 /// Voxels, coarse to fine.
 const STEPS: [&str; 4] = ["2", "1", "0.5", "0.25"];
@@ -180,7 +181,7 @@ impl Keys {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SceneOptions;
+    use crate::options::SceneOptions;
 
     #[test]
     fn every_setting_suits_its_mode_and_has_a_name_of_its_own() {

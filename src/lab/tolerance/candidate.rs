@@ -2,7 +2,7 @@
 
 use super::Task;
 use crate::error::Result;
-use crate::scene::{Resolved, SceneOptions, Setting};
+use crate::options::{Resolved, SceneOptions, Setting};
 
 /// A candidate in the scene, and what is known of it.
 pub struct Candidate {

@@ -1,7 +1,8 @@
 //! The settings that an error bound chooses among.
 
 use crate::error::Result;
-use crate::scene::{Mode, Setting};
+use crate::options::Setting;
+use crate::scene::Mode;
 
 /// Voxels, coarse to fine.
 const STEPS: [&str; 6] = ["4", "2", "1", "0.5", "0.25", "0.125"];
@@ -75,7 +76,8 @@ fn named(text: &str) -> Result<Setting> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{SamplingMethod, SceneOptions};
+    use crate::options::SceneOptions;
+    use crate::scene::SamplingMethod;
 
     #[test]
     fn all_suit_their_mode_and_the_last_one_takes_no_steps() {

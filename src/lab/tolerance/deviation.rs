@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{DEPTH, Frame, Layer, VALUE, Wanted, percentile};
+use crate::options::{ErrorBound, ErrorMetric};
 use crate::reference::{Sight, display};
-use crate::scene::{ErrorBound, ErrorMetric, Tone};
+use crate::scene::Tone;
 use crate::volume::Volume;
 
 /// What a pixel shows, as far as a metric looks at it; narrowed to the planes' single precision, as

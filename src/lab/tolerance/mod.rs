@@ -34,9 +34,11 @@ pub use student::CONFIDENCE;
 
 use crate::error::Result;
 use crate::frame::Wanted;
+use crate::options::{ErrorBound, Resolved, SceneOptions, Setting};
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::render::Renderer;
-use crate::scene::{Camera, ErrorBound, Resolved, SceneOptions, Setting, Subject};
+use crate::scene::Camera;
+use crate::subject::Subject;
 use crate::volume::Volume;
 
 use search::Search;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::scene::ErrorMetric;
-use crate::scene::options::concise;
+use crate::number_text::concise;
+use crate::options::ErrorMetric;
 
 use super::{CONFIDENCE, Choice};
 

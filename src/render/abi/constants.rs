@@ -168,7 +168,7 @@ const NUMBERS: &[(&str, u32)] = &[
     ("BRICK", BRICK as u32),
     ("CLASS_BITS", CLASS_BITS),
     ("MAX_DISTANCE", MAX_DISTANCE),
-    ("MAX_CLIP_PLANES", ClipPlane::MOST as u32),
+    ("MAX_CLIP_PLANES", ClipPlane::MAX_COUNT as u32),
     ("MAX_KNOTS", MAX_KNOTS),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("KIND_NOTHING", Kind::Nothing as u32),

@@ -26,9 +26,9 @@ fn rgb0(color: Rgb) -> [f32; 4] {
     [r, g, b, 0.0]
 }
 
-/// The step in mm: `step_voxels` of the smallest spacing.
+/// The step in mm.
 pub fn step_mm(sampling: &Sampling, volume: &Volume) -> f64 {
-    sampling.step_voxels * volume.geometry().smallest_spacing_mm()
+    sampling.step.get() * volume.geometry().smallest_spacing_mm()
 }
 
 /// A physical value in the device's stored units; beyond single precision, its end.
@@ -81,15 +81,18 @@ pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {
     let numbers = phong.unwrap_or_default();
     let toward_light = match light {
         Light::Headlight => [0.0, 0.0, 0.0, 1.0],
-        Light::Distant { toward_light: l } => [l.x as f32, l.y as f32, l.z as f32, 0.0],
+        Light::Distant { toward_light } => {
+            let l = toward_light.unit();
+            [l.x as f32, l.y as f32, l.z as f32, 0.0]
+        }
     };
     Shading {
         color: rgb0(color),
         toward_light,
-        ambient: numbers.ambient as f32,
-        diffuse: numbers.diffuse as f32,
-        specular: numbers.specular as f32,
-        shininess: numbers.shininess as f32,
+        ambient: numbers.ambient.get() as f32,
+        diffuse: numbers.diffuse.get() as f32,
+        specular: numbers.specular.get() as f32,
+        shininess: numbers.shininess.get() as f32,
         reflection: phong.map(|phong| phong.reflection).number(),
         pad_0: 0,
         pad_1: 0,
@@ -101,9 +104,9 @@ pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {
 pub fn tone(tone: &SceneTone) -> Tone {
     Tone {
         background: rgb0(tone.background),
-        brightness: tone.brightness as f32,
-        contrast: tone.contrast as f32,
-        inverse_gamma: (1.0 / tone.gamma) as f32,
+        brightness: tone.brightness.get() as f32,
+        contrast: tone.contrast.get() as f32,
+        inverse_gamma: (1.0 / tone.gamma.get()) as f32,
         pad: 0,
     }
 }

@@ -25,7 +25,7 @@ pub fn emission(
 
     let (quadrature, shaded) = (emission.quadrature, emission.phong.is_some());
     let with_values = layers.has(Layer::Value);
-    let tables = Tables::of(quadrature.method, run.variant.filter, with_values);
+    let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
     let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
     let node_average = node_average(run, view, emission)?;
     let inputs = EmissionInputs {
@@ -43,7 +43,7 @@ pub fn emission(
     };
     let mut color = run.plane("colour plane", [0.0; 4])?;
     if quadrature.is_stepped() {
-        cast_emission(run, quadrature.method, &inputs, &mut color, &mut layers)?;
+        cast_emission(run, quadrature.method(), &inputs, &mut color, &mut layers)?;
     } else {
         adaptive_emission(run, &inputs, &mut color, &mut layers)?;
     }
@@ -106,8 +106,8 @@ fn emission_cast(
         ..
     } = *emission;
     // What a bound on premultiplied light leaves for opacity: all behind may be this bright.
-    let bound = quadrature.bound / emission.phong.map_or(1.0, reflected_at_most).max(1.0);
-    let termination = 1.0 - emission.termination;
+    let bound = quadrature.bound() / emission.phong.map_or(1.0, reflected_at_most).max(1.0);
+    let termination = 1.0 - emission.termination.get();
     let min_transmittance = if quadrature.is_stepped() {
         termination
     } else {
@@ -146,5 +146,5 @@ fn traverse_through_leaves(view: &View) -> u32 {
 
 /// The most light that white reflects.
 fn reflected_at_most(phong: Phong) -> f64 {
-    phong.ambient + phong.diffuse + phong.specular
+    phong.ambient.get() + phong.diffuse.get() + phong.specular.get()
 }

@@ -58,8 +58,8 @@ pub enum Limit {
 impl Limit {
     /// The limit of a volume and transfer function.
     pub fn new(homogeneity: Homogeneity, transfer: &TransferFunction, volume: &Volume) -> Self {
-        let Homogeneity { rule, limit } = homogeneity;
-        match rule {
+        let limit = homogeneity.limit.get();
+        match homogeneity.rule {
             HomogeneityRule::Optical => Self::Optical {
                 half: 0.5 * limit,
                 longest: 2.0 * volume.bounding_sphere().1 / transfer.unit_length_mm(),

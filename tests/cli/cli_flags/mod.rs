@@ -79,7 +79,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
 }
 
 #[test]
-fn an_unknown_key_is_told_the_nearest_one() {
+fn an_unknown_key_is_refused_with_the_nearest_one() {
     let place = Place::empty();
     for (key, hint) in [
         ("repeat", "hint: did you mean 'repeats'?"),
@@ -96,7 +96,7 @@ fn an_unknown_key_is_told_the_nearest_one() {
 #[test]
 fn what_is_no_whole_number_is_refused_in_words() {
     let place = Place::empty();
-    for (wrong, told) in [
+    for (wrong, reported) in [
         ("1.5", "'1.5' is not a whole number from 0 on"),
         ("-1", "'-1' is not a whole number from 0 on"),
         (
@@ -105,7 +105,7 @@ fn what_is_no_whole_number_is_refused_in_words() {
         ),
     ] {
         let said = place.refused(&format!("phantom noise -o n.nrrd --seed {wrong}"), 2);
-        assert!(said.contains(told), "{said}");
+        assert!(said.contains(reported), "{said}");
     }
     place.write("seed.toml", "seed = 2.5\n");
     let said = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);

@@ -13,7 +13,7 @@ use angioray::frame::{DEPTH, Frame};
 use angioray::gpu::Device;
 use angioray::scene::{
     Camera, ClipPlane, Emission, Knot, Lens, Picture, Projection, Refine, Rgb, SamplingMethod,
-    Scene, TransferFunction, Window,
+    Scene, Termination, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, Volume};
 use common::{on_device, on_reference, volume_with};
@@ -106,7 +106,7 @@ fn medium() -> Picture {
         opacity: -(-ABSORPTION_PER_MM).exp_m1(),
     };
     Picture::Emission(Emission {
-        termination: 1.0,
+        termination: Termination::NEVER,
         ..Emission::of(TransferFunction::new(vec![knot], 1.0).unwrap())
     })
 }

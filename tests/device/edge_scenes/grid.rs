@@ -1,8 +1,8 @@
 //! Rays along the voxel grid and through its corners, and eyes on it.
 
-use angioray::gpu::Device;
 use angioray::frame::{KIND, VALUE};
-use angioray::scene::{Camera, Filter, Lens};
+use angioray::gpu::Device;
+use angioray::scene::{Camera, Filter, Lens, StepVoxels};
 use glam::DVec3;
 
 use super::{Mode, Trial, noise, picture, report, size};
@@ -151,7 +151,7 @@ fn check_bright_voxel(device: &Device, at: DVec3) {
         for mode in [Mode::Mip, Mode::Iso, Mode::Dvr] {
             let camera = through(at, toward_eye);
             let mut scene = trial.scene(picture(mode, &volume), camera, size(1, 1));
-            scene.sampling.step_voxels = 0.5;
+            scene.sampling.step = StepVoxels::new(0.5).unwrap();
             scenes.push(scene);
         }
     }

@@ -11,7 +11,8 @@ mod values;
 use angioray::extent::ImageSize;
 use angioray::gpu::Device;
 use angioray::scene::{
-    Camera, Emission, Knot, Picture, Projection, Refine, Rgb, Scene, TransferFunction, Window,
+    Camera, Emission, Knot, Picture, Projection, Refine, Rgb, Scene, StepVoxels, Termination,
+    TransferFunction, Window,
 };
 use angioray::volume::Volume;
 use common::Figure::{AlphaMax, DepthP99, Kind, ValueMax};
@@ -59,7 +60,7 @@ fn emission(knots: &[(f64, f64)], unit_mm: f64) -> Picture {
         opacity,
     };
     Picture::Emission(Emission {
-        termination: 1.0,
+        termination: Termination::NEVER,
         ..Emission::of(TransferFunction::new(knots.iter().map(knot).collect(), unit_mm).unwrap())
     })
 }
@@ -100,7 +101,7 @@ impl Trial<'_> {
         let mut scene = common::scene(self.volume, 1, picture);
         scene.camera = camera;
         scene.size = size;
-        scene.sampling.step_voxels = STEP_VOXELS;
+        scene.sampling.step = StepVoxels::new(STEP_VOXELS).unwrap();
         scene
     }
 

@@ -9,9 +9,7 @@ use angioray::extent::Dims;
 use angioray::frame::{Frame, STEPS};
 use angioray::gpu::Device;
 use angioray::progress::Silent;
-use angioray::scene::{
-    Emission, Phong, Picture, Quadrature, QuadratureMethod, Scene, TransferFunction,
-};
+use angioray::scene::{Emission, Phong, Picture, Quadrature, Scene, TransferFunction};
 use angioray::volume::{PhantomKind, PhantomSpec, ReadOptions, Volume, phantom, read};
 
 use super::knot;
@@ -120,10 +118,7 @@ fn judge_one(
         ..Emission::of(transfer(points, volume))
     };
     let adaptive = BOUNDS.map(|bound| Emission {
-        quadrature: Quadrature {
-            method: QuadratureMethod::Adaptive,
-            bound,
-        },
+        quadrature: Quadrature::adaptive(bound).unwrap(),
         ..emission.clone()
     });
     let mut scenes: Vec<Scene> = adaptive.map(|e| scene(volume, e)).to_vec();

@@ -5,8 +5,8 @@ use angioray::frame::{Frame, KIND, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Homogeneity, HomogeneityRule, Picture, Projection, Quadrature,
-    QuadratureMethod, Refine, Rgb, Scene, TransferFunction, Window,
+    Emission, Filter, Homogeneity, HomogeneityLimit, HomogeneityRule, Picture, Projection,
+    Quadrature, QuadratureMethod, Refine, Rgb, Scene, TransferFunction, Window,
 };
 use angioray::volume::Volume;
 
@@ -48,7 +48,13 @@ fn rules() -> Vec<(Quadrature, Option<Homogeneity>)> {
             (HomogeneityRule::Range, 1.0),
         ] {
             if quadrature.is_stepped() {
-                rules.push((quadrature, Some(Homogeneity { rule, limit })));
+                rules.push((
+                    quadrature,
+                    Some(Homogeneity {
+                        rule,
+                        limit: HomogeneityLimit::new(limit).unwrap(),
+                    }),
+                ));
             }
         }
     }

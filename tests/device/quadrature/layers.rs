@@ -5,8 +5,8 @@ use angioray::frame::{DEPTH, Frame, KIND, Layer, NORMAL, STEPS, VALUE, Wanted};
 use angioray::octree::Octree;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Homogeneity, HomogeneityRule, Phong, Picture, Quadrature, QuadratureMethod,
-    Scene, TransferFunction,
+    Emission, Filter, Homogeneity, HomogeneityLimit, HomogeneityRule, Phong, Picture, Quadrature,
+    QuadratureMethod, Scene, StepVoxels, Termination, TransferFunction,
 };
 use angioray::volume::Volume;
 use glam::DVec3;
@@ -57,11 +57,11 @@ fn along_x(
     let scene = |method| {
         let emission = Emission {
             quadrature: Quadrature::of(method),
-            termination: 1.0,
+            termination: Termination::NEVER,
             ..Emission::of(transfer.clone())
         };
         let mut scene = through(volume, DVec3::splat(0.7), DVec3::X, emission);
-        scene.sampling.step_voxels = step_voxels;
+        scene.sampling.step = StepVoxels::new(step_voxels).unwrap();
         scene
     };
     let scenes = QuadratureMethod::ALL.map(scene);
@@ -215,7 +215,10 @@ fn emissions(volume: &Volume) -> Vec<Scene> {
         let emission = Emission {
             phong,
             quadrature: Quadrature::of(method),
-            homogeneity: limit.map(|limit| Homogeneity { rule, limit }),
+            homogeneity: limit.map(|limit| Homogeneity {
+                rule,
+                limit: HomogeneityLimit::new(limit).unwrap(),
+            }),
             ..Emission::of(tf.clone())
         };
         let mut scene = common::scene(volume, 32, Picture::Emission(emission));

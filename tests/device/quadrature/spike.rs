@@ -1,6 +1,8 @@
 //! A transfer function's spike that falls between two samples.
 
-use angioray::scene::{Emission, Quadrature, QuadratureMethod, TransferFunction};
+use angioray::scene::{
+    Emission, Quadrature, QuadratureMethod, StepVoxels, Termination, TransferFunction,
+};
 use glam::DVec3;
 
 use super::{apart, colors, knot, through};
@@ -29,11 +31,11 @@ fn preintegration_keeps_a_spike_between_two_samples_and_other_rules_lose_it() {
         for method in QuadratureMethod::ALL {
             let emission = Emission {
                 quadrature: Quadrature::of(method),
-                termination: 1.0,
+                termination: Termination::NEVER,
                 ..Emission::of(spike(width))
             };
             let mut scene = through(&volume, DVec3::splat(4.2), DVec3::X, emission);
-            scene.sampling.step_voxels = 1.0;
+            scene.sampling.step = StepVoxels::new(1.0).unwrap();
             let truth = on_reference(&volume, &scene).color[0].map(f64::from);
             assert!(truth[3] > 0.5, "{truth:?}");
             let seen = colors(&device, &volume, &[scene])[0];

@@ -3,8 +3,9 @@
 
 use angioray::extent::ImageSize;
 use angioray::frame::STEPS;
-use angioray::scene::Picture;
-use angioray::scene::{Camera, Lens, Quadrature, QuadratureMethod, Scene, SceneOptions, Subject};
+use angioray::options::SceneOptions;
+use angioray::scene::{Camera, Lens, Picture, Quadrature, QuadratureMethod, Scene};
+use angioray::subject::Subject;
 use angioray::volume::{Geometry, Volume};
 use glam::{DMat3, DVec3};
 
@@ -118,7 +119,7 @@ fn the_default_keeps_its_bound_at_a_cost_that_does_not_grow_with_the_ratio() {
         };
         println!("| {name} | {samples:.0} | {error:.1e} |");
         if unlike {
-            assert!(error <= adaptive.bound, "{name}: {error}");
+            assert!(error <= adaptive.bound(), "{name}: {error}");
             assert!(samples < MOST_SAMPLES, "{name}: {samples}");
         }
     }

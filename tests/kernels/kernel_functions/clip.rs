@@ -116,7 +116,7 @@ fn random_planes_cut_where_their_equations_say() {
     let cases: Vec<(Case, Vec<Plane>)> = random_cases(&mut random)
         .into_iter()
         .map(|case| {
-            let count = [0, 1, 2, 7, ClipPlane::MOST as u32][random.below(5) as usize];
+            let count = [0, 1, 2, 7, ClipPlane::MAX_COUNT as u32][random.below(5) as usize];
             let plane = |_| {
                 let [x, y, z, _] = random.direction();
                 let normal = [x, y, z].map(f64::from);

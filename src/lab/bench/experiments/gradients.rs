@@ -7,9 +7,9 @@ use crate::error::Result;
 use crate::frame::error::normal_error;
 use crate::frame::{DEPTH, Frame, Layer, NORMAL, Wanted};
 use crate::lab::report::{Cell, Shown, Table};
+use crate::number_text::concise;
 use crate::reference;
 use crate::render::Rendering;
-use crate::scene::options::concise;
 use crate::scene::{Gradient, Precomputed, Scene};
 use crate::volume::PhantomKind;
 

@@ -69,7 +69,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 /// The paper's cast: kd-restart, fixed steps, regula falsi.
 fn scene(bench: &Bench, dataset: &Dataset) -> Result<Scene> {
     let surface = dataset.surface(bench.preset.side_px())?;
-    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?)?;
     scene.sampling.traverse = Traverse::KdRestart;
     Ok(scene)
 }

@@ -46,7 +46,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 
 fn cases(bench: &Bench, dataset: &Dataset) -> Result<Vec<Case>> {
     let surface = dataset.surface(bench.preset.side_px())?;
-    let march = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    let march = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?)?;
     let by = |traverse: Traverse| {
         let mut scene = march.clone();
         scene.sampling.traverse = traverse;

@@ -113,7 +113,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 /// falsi, kd-restart.
 fn base(bench: &Bench, dataset: &Dataset) -> Result<Case> {
     let surface = dataset.surface(bench.preset.side_px())?;
-    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?);
+    let mut scene = plain_steps(&surface, 0.5, "regula-falsi:5".parse::<Refine>()?)?;
     scene.sampling.traverse = Traverse::KdRestart;
     if let Picture::Surface { phong, .. } = &mut scene.picture {
         *phong = Some(Phong::default());

@@ -11,9 +11,10 @@ use crate::lab::measure::{
     method_label,
 };
 use crate::lab::report::{Point, Scatter, Section, Shown, Table, figure};
+use crate::options::Setting;
 use crate::reference;
 use crate::render::Renderer;
-use crate::scene::{Mode, Scene, Setting};
+use crate::scene::{Mode, Scene};
 use crate::volume::PhantomKind;
 
 pub const EXPERIMENT: Experiment = Experiment {

@@ -7,7 +7,7 @@
 use super::super::papers::{self, Case, Errors, LazyDataset, Measurement, run_group, unskipped};
 use super::super::{Bench, Dataset, Experiment, Outcome};
 use crate::error::Result;
-use crate::scene::{Picture, Scene};
+use crate::scene::{Picture, Scene, Termination};
 use crate::volume::PhantomKind;
 
 pub const EXPERIMENT: Experiment = Experiment {
@@ -44,8 +44,8 @@ fn cases(bench: &Bench, dataset: &Dataset) -> Result<Vec<Case>> {
     let range = dataset.volume.range();
     let knots = [(range.min, OPACITIES[0]), (range.max, OPACITIES[1])];
     let scene = dataset.medium(bench.preset.side_px(), &knots)?;
-    let whole = ending_at(scene.clone(), 1.0);
-    let ended = ending_at(scene, TERMINATION);
+    let whole = ending_at(scene.clone(), Termination::NEVER);
+    let ended = ending_at(scene, Termination::new(TERMINATION)?);
     let ended_name = format!("ends at {TERMINATION}");
     Ok(vec![
         Case::new("to the end", unskipped(whole)).paper_fps(Some(PAPER[0])),
@@ -54,7 +54,7 @@ fn cases(bench: &Bench, dataset: &Dataset) -> Result<Vec<Case>> {
     ])
 }
 
-fn ending_at(mut scene: Scene, termination: f64) -> Scene {
+fn ending_at(mut scene: Scene, termination: Termination) -> Scene {
     if let Picture::Emission(medium) = &mut scene.picture {
         medium.termination = termination;
     }

@@ -40,7 +40,7 @@ fn cases(bench: &Bench, dataset: &Dataset) -> Result<Vec<Case>> {
     for step in STEPS {
         for refiner in REFINERS {
             let of_paper = PAPER.iter().find(|(s, r, _)| (*s, *r) == (step, refiner));
-            let scene = plain_steps(&surface, step, refiner.parse::<Refine>()?);
+            let scene = plain_steps(&surface, step, refiner.parse::<Refine>()?)?;
             let case = Case::new(format!("step {step}, {refiner}"), scene);
             cases.push(case.paper_fps(of_paper.map(|(_, _, fps)| *fps)));
         }

@@ -44,7 +44,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
 fn cases(bench: &Bench, dataset: &Dataset, paper: [f64; 3]) -> Result<Vec<Case>> {
     let surface = dataset.surface(bench.preset.side_px())?;
     let (none, six) = ("none".parse::<Refine>()?, "bisection:6".parse::<Refine>()?);
-    let fine = plain_steps(&surface, 1.0, none);
+    let fine = plain_steps(&surface, 1.0, none)?;
     let mut exact = surface.clone();
     exact.sampling.method = SamplingMethod::Exact;
     Ok(vec![
@@ -54,12 +54,12 @@ fn cases(bench: &Bench, dataset: &Dataset, paper: [f64; 3]) -> Result<Vec<Case>>
             .same_as(0),
         Case::new(
             "+ skipping, step 1 refined",
-            plain_steps(&surface, 1.0, six),
+            plain_steps(&surface, 1.0, six)?,
         ),
-        Case::new("+ skipping, step 5", plain_steps(&surface, 5.0, none)),
+        Case::new("+ skipping, step 5", plain_steps(&surface, 5.0, none)?),
         Case::new(
             "+ skipping, step 5 refined",
-            plain_steps(&surface, 5.0, six),
+            plain_steps(&surface, 5.0, six)?,
         )
         .paper_fps(Some(paper[2])),
         Case::new("exact", exact),

@@ -14,10 +14,12 @@ use crate::lab::measure::interleaved;
 use crate::lab::report::{Point, Scatter, Section, Shown, Table};
 use crate::lab::tolerance::{CONFIDENCE, Task, candidates, choose};
 use crate::octree::{Leaf, Octree};
+use crate::options::{ErrorBound, ErrorMetric, SceneOptions};
 use crate::progress::{Silent, Stage};
 use crate::reference;
 use crate::render::Renderer;
-use crate::scene::{ErrorBound, ErrorMetric, Mode, Scene, SceneOptions, Subject};
+use crate::scene::{Mode, Scene};
+use crate::subject::Subject;
 use crate::volume::Volume;
 
 pub const EXPERIMENT: Experiment = Experiment {

@@ -9,10 +9,10 @@ use crate::frame::error::{DepthError, ValueError, depth_error, value_error};
 use crate::frame::{Frame, Layer, Wanted};
 use crate::lab::measure::{Borderline, Closeness, Times, Tradeoff, front};
 use crate::lab::report::{Cell, Point, Scatter, Section, Shown, Table};
+use crate::number_text::concise;
 use crate::reference;
 use crate::render::Renderer;
-use crate::scene::options::concise;
-use crate::scene::{Picture, Refine, SamplingMethod, Scene};
+use crate::scene::{Picture, Refine, SamplingMethod, Scene, StepVoxels};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "vessels",
@@ -67,16 +67,16 @@ impl Method {
         }
     }
 
-    fn of(self, mut scene: Scene) -> Scene {
+    fn of(self, mut scene: Scene) -> Result<Scene> {
         match self {
             Self::Exact => scene.sampling.method = SamplingMethod::Exact,
             Self::Steps(step_voxels, probe) => {
                 scene.sampling.method = SamplingMethod::Fixed;
-                scene.sampling.step_voxels = step_voxels;
+                scene.sampling.step = StepVoxels::new(step_voxels)?;
                 scene.sampling.probe = probe;
             }
         }
-        scene
+        Ok(scene)
     }
 }
 
@@ -107,7 +107,7 @@ impl Setting {
     }
 
     fn of(self, scene: Scene) -> Result<Scene> {
-        let mut scene = self.method.of(scene);
+        let mut scene = self.method.of(scene)?;
         if let Picture::Surface { refine, .. } = &mut scene.picture {
             *refine = self.refiner.parse::<Refine>()?;
         }
@@ -302,7 +302,8 @@ fn measure(bench: &Bench, dataset: &Dataset) -> Result<Measured> {
 
     let projection = dataset.maximum(side_px)?;
     let methods = Method::all().into_iter();
-    let scenes: Vec<Scene> = methods.map(|m| m.of(projection.clone())).collect();
+    let scenes = methods.map(|m| m.of(projection.clone()));
+    let scenes: Vec<Scene> = scenes.collect::<Result<_>>()?;
     let value = Wanted::NONE.with([Layer::Value]);
     let reference = reference::render(&dataset.volume, &projection, value, bench.progress)?;
     let width = dataset.volume.range().width();

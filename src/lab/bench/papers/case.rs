@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::Result;
 use crate::octree::Leaf;
-use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene};
+use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene, StepVoxels};
 
 /// A picture, and how it is made.
 pub struct Case {
@@ -68,15 +69,18 @@ impl Case {
 }
 
 /// A surface at fixed steps as in the papers: nothing is searched between two samples.
-pub fn plain_steps(scene: &Scene, step_voxels: f64, refine: Refine) -> Scene {
+///
+/// # Errors
+/// A step outside its domain.
+pub fn plain_steps(scene: &Scene, step_voxels: f64, refine: Refine) -> Result<Scene> {
     let mut scene = scene.clone();
     scene.sampling.method = SamplingMethod::Fixed;
-    scene.sampling.step_voxels = step_voxels;
+    scene.sampling.step = StepVoxels::new(step_voxels)?;
     scene.sampling.probe = false;
     if let Picture::Surface { refine: of, .. } = &mut scene.picture {
         *of = refine;
     }
-    scene
+    Ok(scene)
 }
 
 /// The same scene without skipping.

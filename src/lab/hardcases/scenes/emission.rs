@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::super::HardScene;
 use super::view::{OBLIQUE, View};
-use crate::scene::{Quadrature, QuadratureMethod};
+use crate::scene::QuadratureMethod;
 use crate::volume::Volume;
 
 /// The error that the adaptive rule is held to.
@@ -31,11 +31,10 @@ fn under(
     points: &[(f64, f64)],
 ) -> Vec<HardScene> {
     let scene = |&method: &QuadratureMethod| {
-        let bound = match method {
-            QuadratureMethod::Adaptive => BOUND,
-            _ => 0.0,
+        let quadrature = match method {
+            QuadratureMethod::Adaptive => format!("{method}:{BOUND}"),
+            _ => method.to_string(),
         };
-        let quadrature = Quadrature { method, bound };
         let what = match what {
             "" => method.to_string(),
             what => format!("{what}-{method}"),

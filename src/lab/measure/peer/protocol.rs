@@ -151,7 +151,7 @@ impl SceneRequest {
         Self {
             id,
             setting: setting.to_owned(),
-            mode: scene.picture.mode(),
+            mode: scene.picture.mode().name(),
             size: [scene.size.width(), scene.size.height()],
             camera: CameraRequest::of(&scene.camera),
             filter: match scene.sampling.filter {
@@ -167,7 +167,7 @@ impl SceneRequest {
             phong: phong.map(PhongRequest::of),
             toward_light: match scene.light {
                 Light::Headlight => None,
-                Light::Distant { toward_light } => Some(toward_light.to_array()),
+                Light::Distant { toward_light } => Some(toward_light.unit().to_array()),
             },
             clip_planes: planes
                 .map(|plane| plane.normal_world().extend(plane.offset()).to_array())
@@ -214,10 +214,10 @@ impl PhongRequest {
                 Reflection::Phong => "phong",
                 Reflection::BlinnPhong => "blinn-phong",
             },
-            ambient: phong.ambient,
-            diffuse: phong.diffuse,
-            specular: phong.specular,
-            shininess: phong.shininess,
+            ambient: phong.ambient.get(),
+            diffuse: phong.diffuse.get(),
+            specular: phong.specular.get(),
+            shininess: phong.shininess.get(),
         }
     }
 }

@@ -21,7 +21,7 @@ pub fn candidates(dataset: &Dataset, side_px: u32, media: &[Medium]) -> Result<V
         ..Sampling::default()
     };
     let (exact, plain) = (Sampling::default(), Quadrature::default());
-    let steps = format!("step {}", fixed.step_voxels);
+    let steps = format!("step {}", fixed.step);
     let mut all = Vec::new();
     for (kind, setting, sampling) in [
         (PictureKind::Surface, "exact", exact),

@@ -10,7 +10,7 @@ use crate::lab::bench::{Bench, Dataset, Preset};
 use crate::lab::measure::time;
 use crate::lab::report::figure;
 use crate::render::Renderer;
-use crate::scene::{Quadrature, Sampling, SamplingMethod, Scene};
+use crate::scene::{Quadrature, Sampling, SamplingMethod, Scene, StepVoxels};
 
 /// The largest error that a channel of a pixel may have.
 const BOUND: f64 = 2.0 / 255.0;
@@ -59,7 +59,7 @@ impl Medium {
         let quadrature: Quadrature = self.quadrature.parse()?;
         let sampling = Sampling {
             method: SamplingMethod::Fixed,
-            step_voxels: self.step_voxels,
+            step: StepVoxels::new(self.step_voxels)?,
             ..Sampling::default()
         };
         scene(dataset, self.kind(), side_px, sampling, quadrature)

@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::lab::bench::Dataset;
 use crate::scene::{
-    Camera, Emission, Knot, Lens, Light, Mode, Phong, Picture, Projection, Quadrature, Refine, Rgb,
-    Sampling, Scene, Tone, TransferFunction, Window,
+    Camera, Emission, Knot, Lens, Light, Mode, Phong, Picture, Projection, Quadrature, Refine,
+    Reflectance, Rgb, Sampling, Scene, Tone, TransferFunction, Window,
 };
 
 /// What is seen; settings that show the same have one reference and one baseline.
@@ -101,9 +101,9 @@ pub fn scene(
 ) -> Result<Scene> {
     let range = dataset.volume.range();
     let phong = Some(Phong {
-        ambient: PHONG.0,
-        diffuse: PHONG.1,
-        specular: 0.0,
+        ambient: Reflectance::new(PHONG.0)?,
+        diffuse: Reflectance::new(PHONG.1)?,
+        specular: Reflectance::new(0.0)?,
         ..Phong::default()
     });
     let projection = |of| -> Result<Picture> {

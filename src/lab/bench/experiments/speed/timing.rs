@@ -15,7 +15,7 @@ use crate::lab::measure::{
 use crate::lab::report::without_folders;
 use crate::progress::Stage;
 use crate::render::Renderer;
-use crate::scene::{Sampling, SamplingMethod, Scene, Storage};
+use crate::scene::{Sampling, SamplingMethod, Scene, StepVoxels, Storage};
 
 /// The times of one frame, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -132,23 +132,24 @@ enum Turn<'a> {
 
 /// The scenes of sampling alone: from a buffer first, with which casts are compared, then from images
 /// where the device has them.
-fn straight_rays(candidates: &[Candidate], renderer: &Renderer) -> Vec<Scene> {
+fn straight_rays(candidates: &[Candidate], renderer: &Renderer) -> Result<Vec<Scene>> {
     let Some(first) = candidates.first() else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
+    let step = StepVoxels::new(1.0)?;
     let held = Storage::ALL
         .into_iter()
         .filter(|&voxels| renderer.check_storage(voxels).is_ok());
     let straight = held.map(|voxels| Scene {
         sampling: Sampling {
             method: SamplingMethod::Fixed,
-            step_voxels: 1.0,
+            step,
             voxels,
             ..Sampling::default()
         },
         ..first.scene.clone()
     });
-    straight.collect()
+    Ok(straight.collect())
 }
 
 /// Times everything: the rows of the candidates, of sampling alone, of the peer.
@@ -184,7 +185,7 @@ pub fn time_all(lineup: Lineup) -> Result<Vec<TimedRow>> {
             turns.push(Turn::Peer(scene, &first.scene));
         }
     }
-    let straight = straight_rays(candidates, &renderer);
+    let straight = straight_rays(candidates, &renderer)?;
     for scene in &straight {
         rows.push(sampling_row(scene, &mut renderer)?);
         turns.push(Turn::Sampling(scene));

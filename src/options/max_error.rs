@@ -1,6 +1,7 @@
 //! `--max-error`: a bound in the place of how rays are followed.
 
 use super::group::{Keys, group};
+use super::rules::{Decides, Group, deciding, rule};
 use super::{ErrorBound, SceneOptions};
 use crate::error::{Error, Result};
 use crate::scene::Storage;
@@ -18,19 +19,6 @@ group! {
         max_error: ErrorBound,
     }
 }
-
-/// The keys of which an error bound takes the place. The others that say how rays are followed
-/// either change no picture (skipping) or what is taken for the truth (filter, gradient).
-const DECIDED: [&str; 8] = [
-    "sampling",
-    "step",
-    "probe",
-    "refine",
-    "quad",
-    "homogeneity",
-    "homogeneity-rule",
-    "termination",
-];
 
 impl ToleranceOptions {
     /// Flags over a scene file's options: a bound among the flags drops what the file says of how
@@ -62,7 +50,12 @@ impl ToleranceOptions {
             return Err(Error::usage(format!(
                 "'max-error' and '{key}' exclude each other: a bound decides by itself how rays are followed"
             ))
-            .hint(format!("leave out {}, or 'max-error'", DECIDED.join(", "))));
+            .hint(format!(
+                "leave out {}, or 'max-error'",
+                deciding(|decides| decides == Decides::HowWithinBound)
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            )));
         }
         if scene.sampling.voxels == Some(Storage::Filtered) {
             return Err(Error::usage(
@@ -75,24 +68,23 @@ impl ToleranceOptions {
 }
 
 impl SceneOptions {
-    /// The keys given of which an error bound takes the place.
+    /// The options given of which an error bound takes the place.
     fn decided(&self) -> Vec<String> {
-        let mut keys = self.sampling.given();
-        keys.extend(self.picture.given());
-        keys.retain(|key| DECIDED.contains(&key.as_str()));
-        keys
+        let mut options = self.given();
+        options.retain(|option| is_decided(option));
+        options
     }
 
     /// Without what an error bound takes the place of.
     #[must_use]
     pub fn undecided(self) -> Self {
-        let keep = |key: &str| !DECIDED.contains(&key);
-        Self {
-            picture: self.picture.keeping(keep),
-            sampling: self.sampling.keeping(keep),
-            ..self
-        }
+        self.keeping(|option| !is_decided(option))
     }
+}
+
+fn is_decided(option: &str) -> bool {
+    let rule = rule(Group::Scene, option);
+    rule.is_some_and(|rule| rule.decides == Decides::HowWithinBound)
 }
 
 #[cfg(test)]

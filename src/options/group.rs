@@ -1,8 +1,8 @@
 //! A group of options: flags and scene file keys of the same names.
 
-/// What a group of options tells about its keys, which are its flags' names.
+/// Options by their keys, which are their flags' names.
 pub(crate) trait Keys: Sized {
-    /// Those given.
+    /// Returns the keys of those given.
     fn given(&self) -> Vec<String>;
 
     /// The same options without those whose key does not pass.
@@ -36,7 +36,7 @@ macro_rules! group {
             }
         }
 
-        impl $crate::scene::options::group::Keys for $name {
+        impl $crate::options::group::Keys for $name {
             fn given(&self) -> Vec<String> {
                 let mut keys = Vec::new();
                 $(if self.$field.is_some() {

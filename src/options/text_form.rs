@@ -149,7 +149,7 @@ macro_rules! readable {
             fn deserialize<D: serde::Deserializer<'de>>(
                 from: D,
             ) -> std::result::Result<Self, D::Error> {
-                $crate::scene::options::plain::deserialize(from)
+                $crate::options::text_form::deserialize(from)
             }
         }
     )*};
@@ -157,21 +157,21 @@ macro_rules! readable {
 pub(crate) use readable;
 
 /// Gives types with one text form (`FromStr`, `Display`) their place in scene files.
-macro_rules! plain {
+macro_rules! text_form {
     ($($type:ty),* $(,)?) => {$(
-        $crate::scene::options::plain::readable!($type);
+        $crate::options::text_form::readable!($type);
 
         impl serde::Serialize for $type {
             fn serialize<S: serde::Serializer>(
                 &self,
                 into: S,
             ) -> std::result::Result<S::Ok, S::Error> {
-                $crate::scene::options::plain::serialize(self, into)
+                $crate::options::text_form::serialize(self, into)
             }
         }
     )*};
 }
-pub(super) use plain;
+pub(super) use text_form;
 
 /// A picture's size as a list is `[width, height]`.
 impl<'de> serde::Deserialize<'de> for ImageSize {
@@ -186,16 +186,6 @@ impl serde::Serialize for ImageSize {
         serialize(self, into)
     }
 }
-
-plain!(
-    crate::scene::Refine,
-    crate::scene::Quadrature,
-    crate::scene::HomogeneityRule,
-    crate::scene::Filter,
-    crate::scene::SamplingMethod,
-    crate::scene::Storage,
-    crate::scene::Traverse,
-);
 
 #[cfg(test)]
 mod tests {

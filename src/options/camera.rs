@@ -2,15 +2,17 @@
 
 use glam::DVec3;
 
+use super::carm::CArm;
 use super::group::group;
-use super::numbers::{AngleDeg, FovDeg, HeightMm, Zoom};
-use super::subject::Subject;
-use super::values::{CArm, Triple};
-use super::words::View;
+use super::quantities::{AngleDeg, Zoom};
+use super::text_form::text_form;
+use super::triple::Triple;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::scene::view::{Orientation, fit_distance_mm};
-use crate::scene::{Camera, Lens};
+use crate::scene::{Camera, FovDeg, HeightMm, Lens, Orientation, View, fit_distance_mm};
+use crate::subject::Subject;
+
+text_form!(FovDeg, HeightMm, View);
 
 group! {
     /// Where the eye is and how it looks. Lengths in mm, world space LPS.
@@ -76,57 +78,16 @@ group! {
 }
 
 impl CameraOptions {
-    const DEFAULT_FOV_DEG: f64 = 30.0;
     /// How far out the eye and the target may be.
     const FAR_MM: f64 = 1e12;
     /// How far from the volume's centre the eye may be, in radii of the bounding sphere: from
-    /// farther away rays differ by less than their numbers tell apart.
+    /// farther away rays differ by less than their numbers resolve.
     const FAR_RADII: f64 = 1e9;
 
-    /// What of a scene file's camera still applies when these are the flags: an eye replaces a
-    /// view and a view an eye, each with what turns it; one lens replaces the other. Turning and
-    /// zooming go with either.
-    pub(super) fn keep_of(&self, mut file: Self) -> Self {
-        let replaces_view = self.eye.is_some();
-        let replaces_eye = file.eye.is_some() && (self.view.is_some() || self.carm.is_some());
-        if replaces_view || replaces_eye {
-            file = Self {
-                view: None,
-                carm: None,
-                azimuth: None,
-                elevation: None,
-                roll: None,
-                ..file
-            };
-        }
-        if replaces_eye {
-            (file.eye, file.up) = (None, None);
-        }
-        if self.carm.is_some() {
-            (file.view, file.azimuth, file.elevation) = (None, None, None);
-        }
-        if self.view.is_some() || self.azimuth.is_some() || self.elevation.is_some() {
-            file.carm = None;
-        }
-        if self.fov.is_some() {
-            file.ortho = None;
-        }
-        if self.ortho.is_some() {
-            file.fov = None;
-        }
-        file
-    }
-
-    /// The picture's size.
-    pub(super) fn size(&self) -> Result<ImageSize> {
-        match self.size {
-            Some(size) => Ok(size),
-            None => ImageSize::new(512, 512),
-        }
-    }
-
+    /// Checks that no point is too far away.
+    ///
     /// # Errors
-    /// Options that contradict each other, a point too far away.
+    /// Usage: one is.
     pub(super) fn check(&self) -> Result<()> {
         for (key, point) in [("eye", self.eye), ("target", self.target)] {
             if point.is_some_and(|Triple(p)| p.abs().max_element() > Self::FAR_MM) {
@@ -136,50 +97,35 @@ impl CameraOptions {
                 )));
             }
         }
-        if self.fov.is_some() && self.ortho.is_some() {
-            return Err(Error::usage(
-                "'fov' and 'ortho' exclude each other: a picture is perspective or orthographic",
-            ));
-        }
-        let by_view = [("view", self.view.is_some()), ("carm", self.carm.is_some())];
-        if self.eye.is_some()
-            && let Some((key, _)) = by_view.iter().find(|(_, is)| *is)
-        {
-            return Err(Error::usage(format!(
-                "'eye' and '{key}' exclude each other: both place the eye"
-            ))
-            .hint("'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either"));
-        }
-        if self.up.is_some() && self.eye.is_none() {
-            return Err(
-                Error::usage("'up' goes with 'eye' alone: a view has an up of its own")
-                    .hint("'roll' turns a view about its line of sight"),
-            );
-        }
-        if self.carm.is_some() {
-            let given = [
-                ("view", self.view.is_some_and(|view| view != View::Anterior)),
-                ("azimuth", self.azimuth.is_some()),
-                ("elevation", self.elevation.is_some()),
-            ];
-            if let Some((key, _)) = given.iter().find(|(_, is)| *is) {
-                return Err(Error::usage(format!(
-                    "'carm' and '{key}' exclude each other: 'carm' is azimuth and elevation from the anterior view"
-                )));
-            }
-        }
         Ok(())
     }
 
-    /// With the eye, target, up and lens worked out and everything else dropped: filling again
-    /// changes nothing.
-    pub(super) fn filled(self, subject: &Subject) -> Result<Self> {
+    /// Makes the picture's size and the camera, and the options that make the same: the eye, target, up and
+    /// lens worked out and everything else dropped.
+    ///
+    /// # Errors
+    /// Usage: a point too far away; an impossible camera.
+    pub(super) fn resolve(self, subject: &Subject) -> Result<(ImageSize, Camera, Self)> {
         self.check()?;
-        let size = self.size()?;
+        let size = self.size.unwrap_or(ImageSize::DEFAULT);
         let target = self.target.map_or(subject.center_world, |Triple(p)| p);
-        let zoom = self.zoom.map_or(1.0, Zoom::get);
-        let fov_deg = self.fov.map_or(Self::DEFAULT_FOV_DEG, FovDeg::get);
-        let (eye, up) = match self.eye {
+        let (eye, up) = self.placed(target, subject, size);
+        Self::check_distance(eye, subject)?;
+        let (lens, of_lens) = self.lens()?;
+        let camera = Camera::look_at(eye, target, up, lens)?;
+        let options = Self {
+            size: Some(size),
+            eye: Some(Triple(eye)),
+            target: Some(Triple(target)),
+            up: Some(Triple(up)),
+            ..of_lens
+        };
+        Ok((size, camera, options))
+    }
+
+    /// The eye and its up: those given, or of a view, turned.
+    fn placed(&self, target: DVec3, subject: &Subject, size: ImageSize) -> (DVec3, DVec3) {
+        match self.eye {
             Some(Triple(eye)) => {
                 let up = match self.up {
                     Some(Triple(up)) => up,
@@ -197,12 +143,19 @@ impl CameraOptions {
                 let distance_mm = match self.ortho {
                     // The eye plane clears the volume, wherever the target is.
                     Some(_) => 2.0 * subject.radius_mm + target.distance(subject.center_world),
-                    None => fit_distance_mm(subject.radius_mm, fov_deg, size),
+                    None => {
+                        let fov_deg = self.fov.unwrap_or_default().get();
+                        fit_distance_mm(subject.radius_mm, fov_deg, size)
+                    }
                 };
                 let eye = target + orientation.toward_eye * distance_mm;
                 (eye, orientation.up)
             }
-        };
+        }
+    }
+
+    /// Checks that an eye is so near that its rays differ.
+    fn check_distance(eye: DVec3, subject: &Subject) -> Result<()> {
         let far_mm = Self::FAR_RADII * subject.radius_mm;
         let distance_mm = eye.distance(subject.center_world);
         if distance_mm > far_mm {
@@ -212,23 +165,27 @@ impl CameraOptions {
             ))
             .hint("'ortho' looks from infinitely far away"));
         }
-        let (fov, ortho) = match self.ortho {
-            Some(height) => (None, Some(HeightMm::new(height.get() / zoom)?)),
-            None if zoom == 1.0 => (Some(FovDeg::new(fov_deg)?), None),
-            None => {
-                let half = (fov_deg.to_radians() / 2.0).tan() / zoom;
-                (Some(FovDeg::new(2.0 * half.atan().to_degrees())?), None)
-            }
-        };
-        Ok(Self {
-            size: Some(size),
-            eye: Some(Triple(eye)),
-            target: Some(Triple(target)),
-            up: Some(Triple(up)),
-            fov,
-            ortho,
-            ..Self::default()
-        })
+        Ok(())
+    }
+
+    /// The lens, narrowed by the zoom, and the options that make the same.
+    fn lens(&self) -> Result<(Lens, Self)> {
+        let zoom = self.zoom.unwrap_or_default().get();
+        let none = Self::default();
+        if let Some(height) = self.ortho {
+            let height = HeightMm::new(height.get() / zoom)?;
+            let height_mm = height.get();
+            let ortho = Some(height);
+            return Ok((Lens::Orthographic { height_mm }, Self { ortho, ..none }));
+        }
+        let mut fov = self.fov.unwrap_or_default();
+        if zoom != 1.0 {
+            let half = (fov.get().to_radians() / 2.0).tan() / zoom;
+            fov = FovDeg::new(2.0 * half.atan().to_degrees())?;
+        }
+        let fov_deg = fov.get();
+        let fov = Some(fov);
+        Ok((Lens::Perspective { fov_deg }, Self { fov, ..none }))
     }
 
     /// By `azimuth`, `elevation` and `roll`, in this order.
@@ -256,19 +213,5 @@ impl CameraOptions {
             (true, false) => (eye, after.up),
             (false, _) => (target + after.toward_eye * eye.distance(target), after.up),
         }
-    }
-
-    /// From filled options.
-    pub(in crate::scene) fn camera(&self) -> Result<Camera> {
-        let lens = match self.ortho {
-            Some(height) => Lens::Orthographic {
-                height_mm: height.get(),
-            },
-            None => Lens::Perspective {
-                fov_deg: self.fov.map_or(Self::DEFAULT_FOV_DEG, FovDeg::get),
-            },
-        };
-        let point = |triple: Option<Triple>| triple.map_or(DVec3::ZERO, |Triple(p)| p);
-        Camera::look_at(point(self.eye), point(self.target), point(self.up), lens)
     }
 }

@@ -2,13 +2,14 @@
 
 use super::SceneOptions;
 use super::group::Keys;
+use super::rules::{Decides, Group, deciding, rule};
 use crate::error::{Error, Result};
 
 /// A named choice of sampling, refinement, quadrature and gradients, which can be laid over any
 /// scene's options.
 ///
 /// It holds nothing that changes what the scene is of, so that all settings of a scene have the
-/// same truth: the reference's picture of the scene without any.
+/// same reference picture: that of the scene without any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     name: String,
@@ -16,19 +17,6 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The keys of [`PictureOptions`](super::PictureOptions) that a setting may hold, beside all of
-    /// [`SamplingOptions`](super::SamplingOptions).
-    const KEYS: [&str; 8] = [
-        "refine",
-        "quad",
-        "homogeneity",
-        "homogeneity-rule",
-        "termination",
-        "gradient",
-        "gradient-scale",
-        "gradient-smooth",
-    ];
-
     /// From the text of a scene file; `name` is what tables call the setting.
     ///
     /// # Errors
@@ -45,45 +33,36 @@ impl Setting {
     /// Usage: an option says what is seen rather than how.
     pub fn new(name: impl Into<String>, options: SceneOptions) -> Result<Self> {
         let name = name.into();
-        let said = [
-            options.volume.given(),
-            options.picture.given(),
-            options.camera.given(),
-            options.clip.given(),
-            options.tone.given(),
-        ];
-        let mut said = said.iter().flatten();
-        match said.find(|key| !Self::is_key_of_picture(key)) {
+        let what = |option: &&String| !is_how(option);
+        match options.given().iter().find(what) {
             None => Ok(Self { name, options }),
-            Some(key) => Err(Error::usage(format!(
-                "setting '{name}': '{key}' says what is seen, not how its rays are followed"
+            Some(option) => Err(Error::usage(format!(
+                "setting '{name}': '{option}' says what is seen, not how its rays are followed"
             ))
             .hint(format!(
-                "a setting may say sampling, step, filter, traverse, skip, probe, voxels, {}",
-                Self::KEYS.join(", ")
+                "a setting may say {}",
+                deciding(|decides| decides != Decides::What)
+                    .collect::<Vec<_>>()
+                    .join(", ")
             ))),
         }
-    }
-
-    fn is_key_of_picture(key: &str) -> bool {
-        Self::KEYS.contains(&key)
     }
 
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What it says.
+    /// Returns what it says of how rays are followed.
     pub fn options(&self) -> &SceneOptions {
         &self.options
     }
 
-    /// `base` with its rays followed in this way; of the base's own ways nothing is left.
+    /// `base` with its rays followed by this setting alone.
     pub fn over(&self, base: &SceneOptions) -> SceneOptions {
         self.options.clone().over(base.what())
     }
 
-    /// As flags, for the user to repeat.
+    /// Returns it as flags, for the user to repeat.
     pub fn flags(&self) -> String {
         let table = toml::Table::try_from(&self.options).unwrap_or_default();
         let flags = table.iter().map(|(key, value)| match value {
@@ -98,23 +77,18 @@ impl SceneOptions {
     /// What is seen, without how rays are followed.
     #[must_use]
     pub fn what(&self) -> Self {
-        let keep = |key: &str| !Setting::is_key_of_picture(key);
-        Self {
-            picture: self.picture.clone().keeping(keep),
-            sampling: super::SamplingOptions::default(),
-            ..self.clone()
-        }
+        self.clone().keeping(|option| !is_how(option))
     }
 
-    /// How rays are followed, as far as it was said.
+    /// How rays are followed, as far as it is given.
     #[must_use]
     pub fn how(&self) -> Self {
-        Self {
-            picture: self.picture.clone().keeping(Setting::is_key_of_picture),
-            sampling: self.sampling.clone(),
-            ..Self::default()
-        }
+        self.clone().keeping(is_how)
     }
+}
+
+fn is_how(option: &str) -> bool {
+    rule(Group::Scene, option).is_some_and(|rule| rule.decides != Decides::What)
 }
 
 #[cfg(test)]

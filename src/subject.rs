@@ -1,22 +1,24 @@
-//! What a scene's defaults need to know about the volume.
+//! A volume as scenes see it: what their defaults are made of.
 
 use glam::DVec3;
 
 use crate::extent::Range;
 
-/// The volume as the scene sees it.
+/// The bounds, spacing and values of a volume: all that a scene's defaults depend on.
+///
+/// [`Subject::of`] makes it of a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Subject {
     /// Centre of the bounding sphere, world.
     pub center_world: DVec3,
     /// Radius of the bounding sphere, mm.
     pub radius_mm: f64,
-    /// Along the voxel axes.
+    /// Spacing along the voxel axes, mm.
     pub spacing_mm: DVec3,
-    /// Physical values.
+    /// Range of the physical values.
     pub range: Range,
-    /// Physical values without a few far-away voxels and without padding: what defaults are made
-    /// of. Of most volumes the whole range.
+    /// Range of the physical values without a few far-away voxels and without padding: what defaults are
+    /// made of. Of most volumes the whole range.
     pub robust_range: Range,
     /// Otsu's threshold, physical.
     pub otsu: f64,

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::builder::{MapValueParser, PathBufValueParser, TypedValueParser, ValueParserFactory};
 
+use super::enum_names::NonFiniteRule;
 use super::group::group;
-use super::numbers::SigmaMm;
-use super::plain;
-use super::values::SpacingMm;
-use super::words::NonFiniteRule;
+use super::quantities::SigmaMm;
+use super::text_form::{self, text_form};
+use super::triple::SpacingMm;
 
 /// A file's path. In a scene file, relative to that file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl serde::Serialize for FilePath {
 
 impl<'de> serde::Deserialize<'de> for FilePath {
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        plain::deserialize(from).map(Self)
+        text_form::deserialize(from).map(Self)
     }
 }
 
@@ -52,7 +52,7 @@ impl std::fmt::Display for RawSizeText {
     }
 }
 
-plain::plain!(RawSizeText);
+text_form!(RawSizeText);
 
 group! {
     /// The volume and how it is read.
@@ -100,13 +100,13 @@ group! {
 }
 
 impl VolumeOptions {
-    /// With every default in its place. The layout of a raw file has none, since other files have
-    /// their own; nor has the octree, which never changes the picture.
+    /// Returns the options with every default in its place. The layout of a raw file has none, since other
+    /// files have their own; nor has the octree, which never changes the picture.
     #[must_use]
-    pub(super) fn filled(self) -> Self {
+    pub(super) fn resolve(self) -> Self {
         Self {
             frame: self.frame.or(Some(0)),
-            smooth: self.smooth.or(SigmaMm::new(0.0).ok()),
+            smooth: Some(self.smooth.unwrap_or_default()),
             non_finite: Some(self.non_finite.unwrap_or_default()),
             ..self
         }

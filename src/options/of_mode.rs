@@ -1,20 +1,26 @@
 //! Options for several modes at once: what of them goes with each.
 
+use super::SceneOptions;
 use super::group::Keys;
-use super::picture::belongs_to;
-use super::{Mode, PictureOptions, SamplingOptions, SceneOptions, Shading};
-use crate::scene::{SamplingMethod, Storage};
+use super::rules::{Group, Need, has_needs};
+use crate::scene::{Mode, SamplingMethod, Storage};
 
 impl SceneOptions {
     /// These options, which are for several modes at once, as far as they go with this one, which is
-    /// theirs afterwards.
+    /// theirs afterwards: light and gradients only where its shading makes use of them.
     #[must_use]
     pub fn of_mode(&self, mode: Mode) -> Self {
-        let mut options = Self {
-            picture: self.picture.of_mode(mode),
-            sampling: self.sampling.of_mode(mode),
-            ..self.clone()
+        let mut all = self.clone();
+        all.picture.mode = Some(mode);
+        let goes_with_mode = |option: &str| {
+            has_needs(Group::Scene, option, |need| match need {
+                Need::Modes(..) | Need::IdleBeside(_) | Need::Shading | Need::Normals => {
+                    all.meets(need)
+                }
+                _ => true,
+            })
         };
+        let mut options = all.clone().keeping(goes_with_mode);
         // Of both, the quadrature says more of how an integral is sampled.
         let quad = options.picture.quad.map(|quad| quad.sampling());
         if quad.is_some() {
@@ -24,34 +30,6 @@ impl SceneOptions {
         if options.method() == SamplingMethod::Exact {
             let suits = |storage: &Storage| *storage != Storage::Filtered;
             options.sampling.voxels = options.sampling.voxels.filter(suits);
-        }
-        options
-    }
-}
-
-impl PictureOptions {
-    /// What belongs to the mode; light and gradients only where its shading makes use of them.
-    fn of_mode(&self, mode: Mode) -> Self {
-        let mut options = Self {
-            mode: Some(mode),
-            ..self.clone().keeping(|key| belongs_to(key, mode))
-        };
-        if options.shading() == Shading::None {
-            options = options.unlit();
-        }
-        if !options.has_normals() {
-            options = options.without_gradient();
-        }
-        options
-    }
-}
-
-impl SamplingOptions {
-    /// What the mode's rays make use of: only a surface or an extremum lies at a peak between samples.
-    fn of_mode(&self, mode: Mode) -> Self {
-        let mut options = self.clone();
-        if matches!(mode, Mode::Mean | Mode::Dvr) {
-            options.probe = None;
         }
         options
     }

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::numbers::number;
-use super::plain::plain;
-use super::words::Mode;
+use super::text_form::text_form;
 use crate::error::{Error, Result};
+use crate::number_text::{concise, number};
+use crate::scene::Mode;
 
 /// A figure by which a picture is held against the reference's of the same scene; as
 /// `frame::error` defines each.
@@ -107,7 +107,7 @@ impl ErrorBound {
         }
         Err(Error::usage(format!(
             "a bound of {} for {metric} is out of its domain: it must be {}",
-            super::concise(bound),
+            concise(bound),
             metric.domain()
         )))
     }
@@ -121,7 +121,7 @@ impl ErrorBound {
         self.bound
     }
 
-    /// Whether a figure of the metric is within the bound. No figure that is none is.
+    /// Returns whether a figure of the metric is within the bound; NaN never is.
     pub fn is_met_by(self, figure: f64) -> bool {
         match self.metric {
             ErrorMetric::Psnr => figure >= self.bound,
@@ -201,7 +201,7 @@ impl fmt::Display for ErrorBound {
     }
 }
 
-plain!(ErrorBound);
+text_form!(ErrorBound);
 
 #[cfg(test)]
 mod tests {

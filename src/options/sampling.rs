@@ -1,10 +1,11 @@
 //! Sampling options: how rays are followed.
 
+use super::enum_names::Switch;
 use super::group::group;
-use super::numbers::StepVoxels;
-use super::words::Switch;
-use crate::error::Result;
-use crate::scene::{Filter, Sampling, SamplingMethod, Storage, Traverse};
+use super::text_form::text_form;
+use crate::scene::{Filter, Sampling, SamplingMethod, StepVoxels, Storage, Traverse};
+
+text_form!(Filter, SamplingMethod, StepVoxels, Storage, Traverse);
 
 group! {
     /// How rays are followed through the volume.
@@ -51,33 +52,37 @@ group! {
 }
 
 impl SamplingOptions {
-    /// With every default in its place.
-    pub(super) fn filled(self, method: SamplingMethod) -> Result<Self> {
+    /// Makes the sampling by this method, and the options that make the same: exact sampling takes no steps
+    /// and has none.
+    pub(super) fn resolve(self, method: SamplingMethod) -> (Sampling, Self) {
         let default = Sampling::default();
-        Ok(Self {
-            sampling: Some(method),
-            step: match self.step {
-                Some(step) => Some(step),
-                None => Some(StepVoxels::new(default.step_voxels)?),
+        let given = match method {
+            SamplingMethod::Fixed => self,
+            SamplingMethod::Exact => Self {
+                step: None,
+                probe: None,
+                ..self
             },
-            filter: self.filter.or(Some(default.filter)),
-            traverse: self.traverse.or(Some(default.traverse)),
-            skip: self.skip.or(Some(default.skip.into())),
-            probe: self.probe.or(Some(default.probe.into())),
-            voxels: self.voxels.or(Some(default.voxels)),
-        })
-    }
-
-    pub(super) fn sampling(&self) -> Sampling {
-        let default = Sampling::default();
-        Sampling {
-            method: self.sampling.unwrap_or(default.method),
-            step_voxels: self.step.map_or(default.step_voxels, StepVoxels::get),
-            filter: self.filter.unwrap_or(default.filter),
-            traverse: self.traverse.unwrap_or(default.traverse),
-            skip: self.skip.map_or(default.skip, Switch::is_on),
-            probe: self.probe.map_or(default.probe, Switch::is_on),
-            voxels: self.voxels.unwrap_or(default.voxels),
-        }
+        };
+        let sampling = Sampling {
+            method,
+            step: given.step.unwrap_or(default.step),
+            filter: given.filter.unwrap_or(default.filter),
+            traverse: given.traverse.unwrap_or(default.traverse),
+            skip: given.skip.map_or(default.skip, Switch::is_on),
+            probe: given.probe.map_or(default.probe, Switch::is_on),
+            voxels: given.voxels.unwrap_or(default.voxels),
+        };
+        let is_fixed = method == SamplingMethod::Fixed;
+        let options = Self {
+            sampling: Some(method),
+            step: is_fixed.then_some(sampling.step),
+            filter: Some(sampling.filter),
+            traverse: Some(sampling.traverse),
+            skip: Some(sampling.skip.into()),
+            probe: is_fixed.then_some(sampling.probe.into()),
+            voxels: Some(sampling.voxels),
+        };
+        (sampling, options)
     }
 }

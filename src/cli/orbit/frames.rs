@@ -1,0 +1,34 @@
+//! The frames of an orbit: the scene of the first, seen by each one's camera.
+
+use crate::error::Result;
+use crate::options::Resolved;
+use crate::scene::Orbit;
+
+use super::plan::Plan;
+
+/// What is seen in an orbit, and from where.
+pub struct Frames {
+    first: Resolved,
+    pub orbit: Orbit,
+}
+
+impl Frames {
+    /// The frames that a plan makes of the first one.
+    ///
+    /// # Errors
+    /// As [`Orbit::new`].
+    pub fn new(first: Resolved, plan: &Plan) -> Result<Self> {
+        let orbit = Orbit::new(first.scene.camera, plan.axis, plan.degrees, plan.frames)?;
+        Ok(Self { first, orbit })
+    }
+
+    /// The first frame.
+    pub fn first(&self) -> &Resolved {
+        &self.first
+    }
+
+    /// A frame: what rendering with its eye and up would make.
+    pub fn at(&self, frame: u32) -> Resolved {
+        self.first.seen_by(self.orbit.camera(frame))
+    }
+}

@@ -1,0 +1,58 @@
+//! Choices that only options have, and their names.
+
+use super::text_form::text_form;
+use crate::scene::enum_names::enum_names;
+
+/// `--shading`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shading {
+    None,
+    Phong,
+    BlinnPhong,
+}
+enum_names!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "blinn-phong");
+
+/// `--gradient`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GradientMethod {
+    #[default]
+    Central,
+    Forward,
+    FourthOrder,
+    Precomputed,
+}
+enum_names!(GradientMethod, "a gradient": Central = "central", Forward = "forward",
+    FourthOrder = "fourth-order", Precomputed = "precomputed");
+
+/// Something that is on or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Switch {
+    On,
+    Off,
+}
+enum_names!(Switch, "a switch": On = "on", Off = "off");
+
+impl Switch {
+    pub fn is_on(self) -> bool {
+        self == Self::On
+    }
+}
+
+impl From<bool> for Switch {
+    fn from(on: bool) -> Self {
+        if on { Self::On } else { Self::Off }
+    }
+}
+
+/// What NaN and ±Inf voxels are read as (`--non-finite`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NonFiniteRule {
+    /// As the smallest finite value of the volume.
+    #[default]
+    Replace,
+    /// Not at all: they are an error.
+    Refuse,
+}
+enum_names!(NonFiniteRule, "a rule for NaN and infinite voxels": Replace = "replace", Refuse = "refuse");
+
+text_form!(Shading, GradientMethod, Switch, NonFiniteRule);

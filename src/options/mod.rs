@@ -1,0 +1,145 @@
+//! Options: the flags of the command line, the keys of the scene file and the stats' `scene`
+//! are this one thing.
+//!
+//! They have two forms. *As given* every option may be absent ([`SceneOptions`]). *As resolved* they are
+//! the [`Scene`](crate::scene::Scene): [`SceneOptions::resolve`] applies the defaults, which depend on the
+//! volume. With the scene it gives the options that make the same scene again and leave nothing to a default.
+//!
+//! All rules between options are in one table (`rules`).
+//!
+//! What does not determine the picture (its file, the device) is no scene option, but its flags can
+//! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
+
+mod camera;
+mod carm;
+mod check;
+mod clip;
+mod enum_names;
+mod error_bound;
+pub(crate) mod group;
+mod max_error;
+mod notes;
+mod of_mode;
+mod order_statistics;
+mod picture;
+mod precedence;
+mod quantities;
+mod resolve;
+pub(crate) mod rules;
+mod sampling;
+mod scene_file;
+mod setting;
+mod step_cost;
+pub(crate) mod text_form;
+mod threshold;
+mod to_picture;
+mod tone;
+mod transfer_choice;
+mod triple;
+mod volume;
+
+pub use camera::CameraOptions;
+pub use carm::CArm;
+pub use clip::ClipOptions;
+pub use enum_names::{GradientMethod, NonFiniteRule, Shading, Switch};
+pub use error_bound::{ErrorBound, ErrorMetric};
+pub use max_error::ToleranceOptions;
+pub use picture::PictureOptions;
+pub use quantities::{AngleDeg, Count, GradientScale, SigmaMm, SigmaVoxels, Zoom};
+pub use resolve::Resolved;
+pub use sampling::SamplingOptions;
+pub use scene_file::{Part, SceneFile, flag_names};
+pub use setting::Setting;
+pub use threshold::{Threshold, WindowEnds};
+pub use tone::ToneOptions;
+pub use transfer_choice::TransferChoice;
+pub use triple::{SpacingMm, Triple};
+pub use volume::{FilePath, RawSizeText, VolumeOptions};
+
+use crate::scene::Mode;
+use group::Keys;
+
+/// Everything that determines a picture, as far as it is given: by flags, by a scene file, or by
+/// flags over a scene file ([`SceneOptions::over`]).
+#[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
+pub struct SceneOptions {
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub volume: VolumeOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub picture: PictureOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub camera: CameraOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub clip: ClipOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub sampling: SamplingOptions,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub tone: ToneOptions,
+}
+
+impl SceneOptions {
+    /// Returns what kind of picture this is.
+    pub fn mode(&self) -> Mode {
+        self.picture.mode()
+    }
+
+    /// The same options, those not given taken from `base`, whatever they rule out in it.
+    fn or(self, base: Self) -> Self {
+        Self {
+            volume: self.volume.over(base.volume),
+            picture: self.picture.over(base.picture),
+            camera: self.camera.over(base.camera),
+            clip: self.clip.over(base.clip),
+            sampling: self.sampling.over(base.sampling),
+            tone: self.tone.over(base.tone),
+        }
+    }
+}
+
+impl Keys for SceneOptions {
+    fn given(&self) -> Vec<String> {
+        [
+            self.volume.given(),
+            self.sampling.given(),
+            self.picture.given(),
+            self.camera.given(),
+            self.clip.given(),
+            self.tone.given(),
+        ]
+        .concat()
+    }
+
+    fn keeping(self, passes: impl Fn(&str) -> bool) -> Self {
+        Self {
+            volume: self.volume.keeping(&passes),
+            picture: self.picture.keeping(&passes),
+            camera: self.camera.keeping(&passes),
+            clip: self.clip.keeping(&passes),
+            sampling: self.sampling.keeping(&passes),
+            tone: self.tone.keeping(&passes),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn given_keys_are_the_flags_names() {
+        let options = PictureOptions {
+            lmip_threshold: Some(Threshold::Otsu),
+            shading: Some(Shading::Phong),
+            ..PictureOptions::default()
+        };
+        assert_eq!(options.given(), ["lmip-threshold", "shading"]);
+        let kept = options.keeping(|key| key != "lmip-threshold");
+        assert_eq!(kept.given(), ["shading"]);
+    }
+}

@@ -1,0 +1,186 @@
+//! Picture options: what is shown.
+
+use super::enum_names::{GradientMethod, Shading, Switch};
+use super::group::group;
+use super::quantities::{GradientScale, SigmaVoxels};
+use super::text_form::text_form;
+use super::threshold::{Threshold, WindowEnds};
+use super::transfer_choice::TransferChoice;
+use crate::scene::{
+    HomogeneityLimit, HomogeneityRule, Light, Mode, Quadrature, Refine, Reflectance, Shininess,
+    SrgbColor, Termination, TransferFile, TransferUnits,
+};
+
+text_form!(
+    HomogeneityLimit,
+    HomogeneityRule,
+    Light,
+    Mode,
+    Quadrature,
+    Refine,
+    Reflectance,
+    Shininess,
+    Termination
+);
+
+group! {
+    /// What is shown.
+    #[derive(serde::Serialize)]
+    #[command(next_help_heading = "Picture")]
+    pub struct PictureOptions {
+        /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission
+        /// and absorption) [default: iso]
+        #[arg(long, value_name = "MODE")]
+        mode: Mode,
+
+        /// iso: the surface's value; a number, a share of the value range such as 50%, a percentile of
+        /// the voxels such as p99.5 (nearest rank), or otsu [default: suggested by the volume's
+        /// histogram]
+        #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
+        iso: Threshold,
+
+        /// iso: close the surface where the volume ends or is clipped [default: on]
+        #[arg(long, value_name = "on|off")]
+        caps: Switch,
+
+        /// iso: how the hit is refined between samples: none, bisection, regula-falsi, illinois or
+        /// newton, :N for N iterations; with fixed steps [default: regula-falsi:5]
+        #[arg(long, value_name = "METHOD[:N]")]
+        refine: Refine,
+
+        /// iso: the surface's colour: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as
+        /// ivory [default: warm ivory, 0.94,0.87,0.76]
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
+        color: SrgbColor,
+
+        /// Projections: the values shown black and white; numbers, shares of the value range such as
+        /// 5%, percentiles of the voxels such as p99.5, or otsu. HI,LO inverts: what is bright in the
+        /// volume is dark in the picture [default: the value range, without a few far-away values and
+        /// padding]
+        #[arg(long, value_name = "LO,HI", allow_hyphen_values = true)]
+        window: WindowEnds,
+
+        /// lmip: the value from which a local maximum counts, written as that of --iso [default: the
+        /// suggested iso value]
+        #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
+        lmip_threshold: Threshold,
+
+        /// dvr: the transfer function, a TOML file or a preset: cta (Hounsfield units), mra or
+        /// 3dra (shares of the window's default) [default: 3dra]
+        #[arg(long, value_name = "FILE|PRESET")]
+        tf: TransferChoice,
+
+        /// dvr: how light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or
+        /// preintegrated at the fixed step, or adaptive, which takes no steps and keeps every
+        /// channel within the error :BOUND of linear light, 0.001 by default [default: simpson;
+        /// adaptive where --sampling exact is given, and where nothing about steps is and they would
+        /// cost out of proportion: spacings more than 100 times apart, or more than 16384 samples
+        /// per ray]
+        #[arg(long, value_name = "METHOD[:BOUND]")]
+        quad: Quadrature,
+
+        /// dvr: take an octree leaf for its average value, in one step, where that changes no
+        /// pixel by more than E [default: never]
+        #[arg(long, value_name = "E", allow_hyphen_values = true)]
+        homogeneity: HomogeneityLimit,
+
+        /// dvr: what E limits: optical, the pixel's error; or range, the leaf's value range as a
+        /// share of the volume's, whatever the transfer function does in it [default: optical]
+        #[arg(long, value_name = "optical|range")]
+        homogeneity_rule: HomogeneityRule,
+
+        /// dvr: the opacity at which a ray ends; the colour lost is at most 1 minus this
+        /// [default: 0.999]
+        #[arg(long, value_name = "OPACITY", allow_hyphen_values = true)]
+        termination: Termination,
+
+        /// iso, dvr: none, phong or blinn-phong [default: phong for iso, none for dvr]
+        #[arg(long, value_name = "NAME")]
+        shading: Shading,
+
+        /// Light reflected from everywhere [default: 0.1]
+        #[arg(long, value_name = "A", allow_hyphen_values = true)]
+        ambient: Reflectance,
+
+        /// Light of the source reflected in all directions [default: 0.9]
+        #[arg(long, value_name = "D", allow_hyphen_values = true)]
+        diffuse: Reflectance,
+
+        /// Light of the source mirrored [default: 0.2]
+        #[arg(long, value_name = "S", allow_hyphen_values = true)]
+        specular: Reflectance,
+
+        /// Sharpness of the mirrored light [default: 32]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        shininess: Shininess,
+
+        /// headlight, or the world direction toward a distant light [default: headlight]
+        #[arg(long, value_name = "headlight|X,Y,Z", allow_hyphen_values = true)]
+        light: Light,
+
+        /// iso, shaded dvr: how normals are found: central, forward or fourth-order differences of
+        /// the field, or precomputed: central ones at every N-th voxel, interpolated between
+        /// [default: central]
+        #[arg(long, value_name = "NAME")]
+        gradient: GradientMethod,
+
+        /// Voxels between two precomputed gradients, 1 to 8 [default: 2]
+        #[arg(long, value_name = "N", allow_hyphen_values = true)]
+        gradient_scale: GradientScale,
+
+        /// Gaussian smoothing before precomputed gradients: its standard deviation in voxels of the
+        /// smallest spacing [default: 0, none]
+        #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
+        gradient_smooth: SigmaVoxels,
+    }
+}
+
+impl PictureOptions {
+    /// Returns the mode: that of a surface where none is given.
+    pub(super) fn mode(&self) -> Mode {
+        self.mode.unwrap_or(Mode::Iso)
+    }
+
+    /// Returns the shading: Phong's for a surface and none for a medium where none is given.
+    pub(super) fn shading(&self) -> Shading {
+        self.shading.unwrap_or(match self.mode() {
+            Mode::Iso => Shading::Phong,
+            _ => Shading::None,
+        })
+    }
+
+    /// Returns whether the picture is shaded.
+    pub(super) fn is_shaded(&self) -> bool {
+        self.shading() != Shading::None
+    }
+
+    /// Returns whether the picture has normals. An unshaded surface has its normal layer.
+    pub(super) fn has_normals(&self) -> bool {
+        match self.mode() {
+            Mode::Iso => true,
+            Mode::Dvr => self.is_shaded(),
+            Mode::Mip | Mode::Lmip | Mode::Minip | Mode::Mean => false,
+        }
+    }
+
+    /// Returns how normals are found: by central differences where nothing is given.
+    pub(super) fn gradient_method(&self) -> GradientMethod {
+        self.gradient.unwrap_or_default()
+    }
+
+    /// Returns whether a default of these options is made from the values' robust range.
+    pub(super) fn takes_robust_range(&self) -> bool {
+        match self.mode() {
+            Mode::Iso => self.iso.is_none(),
+            Mode::Mip | Mode::Minip | Mode::Mean => self.window.is_none(),
+            Mode::Lmip => self.window.is_none() || self.lmip_threshold.is_none(),
+            Mode::Dvr => {
+                let file = match self.tf.clone() {
+                    Some(choice) => choice.read(),
+                    None => TransferFile::named(TransferFile::DEFAULT_PRESET),
+                };
+                file.is_ok_and(|file| file.units == TransferUnits::Range)
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! From picture options to the picture, its light and its gradient.
+
+use super::enum_names::{GradientMethod, Shading, Switch};
+use super::picture::PictureOptions;
+use super::threshold::{Threshold, WindowEnds};
+use super::transfer_choice::TransferChoice;
+use crate::error::Result;
+use crate::scene::{
+    Emission, Gradient, Homogeneity, Light, Mode, Phong, Picture, Precomputed, Projection,
+    Quadrature, Reflection, SrgbColor, TransferFile, Window,
+};
+use crate::subject::Subject;
+
+/// What picture options are of a volume.
+pub(super) struct ResolvedPicture {
+    pub picture: Picture,
+    pub light: Light,
+    pub gradient: Gradient,
+    /// The options that make the same, with every default of the mode in its place, every value physical and
+    /// the transfer function written out.
+    pub options: PictureOptions,
+}
+
+/// How a picture is lit.
+struct Lighting {
+    phong: Option<Phong>,
+    light: Light,
+    gradient: Gradient,
+    /// The mode, and the options that make the same.
+    options: PictureOptions,
+}
+
+impl PictureOptions {
+    /// Makes the picture; `quadrature` sums its light where the mode is dvr.
+    ///
+    /// # Errors
+    /// An order statistic; an empty window; a transfer function that cannot be read.
+    pub(super) fn resolve(
+        self,
+        quadrature: Quadrature,
+        subject: &Subject,
+    ) -> Result<ResolvedPicture> {
+        let lighting = self.lighting()?;
+        match self.mode() {
+            Mode::Iso => self.surface(lighting, subject),
+            Mode::Mip => self.projection(Projection::Maximum, lighting, subject),
+            Mode::Minip => self.projection(Projection::Minimum, lighting, subject),
+            Mode::Mean => self.projection(Projection::Mean, lighting, subject),
+            Mode::Lmip => {
+                let threshold = value(self.lmip_threshold, subject)?;
+                self.projection(Projection::LocalMaximum { threshold }, lighting, subject)
+            }
+            Mode::Dvr => self.emission(quadrature, lighting, subject),
+        }
+    }
+
+    fn surface(self, lighting: Lighting, subject: &Subject) -> Result<ResolvedPicture> {
+        let iso = value(self.iso, subject)?;
+        let caps = self.caps.is_none_or(Switch::is_on);
+        let refine = self.refine.unwrap_or_default();
+        let color = self.color.unwrap_or(SrgbColor::IVORY);
+        Ok(ResolvedPicture {
+            picture: Picture::Surface {
+                iso,
+                caps,
+                refine,
+                color: color.linear(),
+                phong: lighting.phong,
+            },
+            light: lighting.light,
+            gradient: lighting.gradient,
+            options: Self {
+                iso: Some(Threshold::Value(iso)),
+                caps: Some(caps.into()),
+                refine: Some(refine),
+                color: Some(color),
+                ..lighting.options
+            },
+        })
+    }
+
+    fn projection(
+        self,
+        of: Projection,
+        lighting: Lighting,
+        subject: &Subject,
+    ) -> Result<ResolvedPicture> {
+        let window = match self.window {
+            Some(ends) => Window::new(ends.black.resolve(subject)?, ends.white.resolve(subject)?)?,
+            None => Window::of_range(subject.robust_range)?,
+        };
+        Ok(ResolvedPicture {
+            picture: Picture::Projection { of, window },
+            light: lighting.light,
+            gradient: lighting.gradient,
+            options: Self {
+                window: Some(WindowEnds {
+                    black: Threshold::Value(window.black()),
+                    white: Threshold::Value(window.white()),
+                }),
+                lmip_threshold: match of {
+                    Projection::LocalMaximum { threshold } => Some(Threshold::Value(threshold)),
+                    _ => None,
+                },
+                ..lighting.options
+            },
+        })
+    }
+
+    fn emission(
+        self,
+        quadrature: Quadrature,
+        lighting: Lighting,
+        subject: &Subject,
+    ) -> Result<ResolvedPicture> {
+        let file = match self.tf {
+            Some(choice) => choice.read()?,
+            None => TransferFile::named(TransferFile::DEFAULT_PRESET)?,
+        };
+        let file = file.in_values(subject.robust_range);
+        let termination = self.termination.unwrap_or_default();
+        let homogeneity = self.homogeneity.map(|limit| Homogeneity {
+            rule: self.homogeneity_rule.unwrap_or_default(),
+            limit,
+        });
+        Ok(ResolvedPicture {
+            picture: Picture::Emission(Emission {
+                transfer: file.clone().transfer_function(subject.robust_range)?,
+                phong: lighting.phong,
+                quadrature,
+                termination,
+                homogeneity,
+            }),
+            light: lighting.light,
+            gradient: lighting.gradient,
+            options: Self {
+                tf: Some(TransferChoice::Written(file)),
+                quad: Some(quadrature),
+                termination: Some(termination),
+                homogeneity: homogeneity.map(|homogeneity| homogeneity.limit),
+                homogeneity_rule: homogeneity.map(|homogeneity| homogeneity.rule),
+                ..lighting.options
+            },
+        })
+    }
+
+    fn lighting(&self) -> Result<Lighting> {
+        let (gradient, of_gradient) = self.resolved_gradient()?;
+        let unlit = Lighting {
+            phong: None,
+            light: Light::default(),
+            gradient,
+            options: Self {
+                mode: Some(self.mode()),
+                shading: self.mode().is_lit().then_some(self.shading()),
+                ..of_gradient
+            },
+        };
+        let reflection = match self.shading() {
+            Shading::None => return Ok(unlit),
+            Shading::Phong => Reflection::Phong,
+            Shading::BlinnPhong => Reflection::BlinnPhong,
+        };
+        let default = Phong::default();
+        let phong = Phong {
+            reflection,
+            ambient: self.ambient.unwrap_or(default.ambient),
+            diffuse: self.diffuse.unwrap_or(default.diffuse),
+            specular: self.specular.unwrap_or(default.specular),
+            shininess: self.shininess.unwrap_or(default.shininess),
+        };
+        let light = self.light.unwrap_or_default();
+        Ok(Lighting {
+            phong: Some(phong),
+            light,
+            options: Self {
+                ambient: Some(phong.ambient),
+                diffuse: Some(phong.diffuse),
+                specular: Some(phong.specular),
+                shininess: Some(phong.shininess),
+                light: Some(light),
+                ..unlit.options
+            },
+            ..unlit
+        })
+    }
+
+    /// The gradient, and the options that make the same.
+    fn resolved_gradient(&self) -> Result<(Gradient, Self)> {
+        let none = Self::default();
+        if !self.has_normals() {
+            return Ok((Gradient::default(), none));
+        }
+        let method = self.gradient_method();
+        let options = Self {
+            gradient: Some(method),
+            ..none
+        };
+        Ok(match method {
+            GradientMethod::Central => (Gradient::Central, options),
+            GradientMethod::Forward => (Gradient::Forward, options),
+            GradientMethod::FourthOrder => (Gradient::FourthOrder, options),
+            GradientMethod::Precomputed => {
+                let scale = self.gradient_scale.unwrap_or_default();
+                let sigma = self.gradient_smooth.unwrap_or_default();
+                let precomputed = Precomputed::new(scale.get(), sigma.get())?;
+                let options = Self {
+                    gradient_scale: Some(scale),
+                    gradient_smooth: Some(sigma),
+                    ..options
+                };
+                (Gradient::Precomputed(precomputed), options)
+            }
+        })
+    }
+}
+
+/// The physical value of a threshold: the suggested iso value where none is given.
+fn value(threshold: Option<Threshold>, subject: &Subject) -> Result<f64> {
+    match threshold {
+        Some(threshold) => threshold.resolve(subject),
+        None => Ok(subject.suggested_iso),
+    }
+}

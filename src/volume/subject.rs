@@ -1,0 +1,33 @@
+//! A volume's [`Subject`].
+
+use super::{Histogram, Volume, suggested_iso};
+use crate::subject::Subject;
+
+/// Bins of the histogram from which iso values are suggested.
+const BINS: usize = 1024;
+
+impl Subject {
+    /// Measures a volume: its bounds, its range, and the values that its histogram suggests.
+    pub fn of(volume: &Volume) -> Self {
+        Self::with_histogram(volume, &Self::histogram(volume))
+    }
+
+    /// Counts a volume's values, of its robust range: the histogram from which iso values are suggested.
+    pub fn histogram(volume: &Volume) -> Histogram {
+        Histogram::robust(volume, BINS)
+    }
+
+    /// Measures a volume of which [`Subject::histogram`] is known.
+    pub fn with_histogram(volume: &Volume, histogram: &Histogram) -> Self {
+        let (center_world, radius_mm) = volume.bounding_sphere();
+        Self {
+            center_world,
+            radius_mm,
+            spacing_mm: volume.geometry().spacing_mm(),
+            range: volume.range(),
+            robust_range: histogram.range,
+            otsu: histogram.otsu(),
+            suggested_iso: suggested_iso(histogram),
+        }
+    }
+}

@@ -39,74 +39,34 @@ impl SceneOptions {
 mod tests {
     use super::*;
 
+    /// Options for all modes, a mode, and what of them goes with it.
+    #[rustfmt::skip]
+    const CASES: &[(&str, Mode, &str)] = &[
+        ("iso = 150\ntf = 'cta'\nazimuth = 3", Mode::Iso, "iso = 150\nazimuth = 3"),
+        ("iso = 150\ntf = 'cta'\nazimuth = 3", Mode::Dvr, "tf = 'cta'\nazimuth = 3"),
+        ("iso = 150\ntf = 'cta'\nazimuth = 3", Mode::Mip, "azimuth = 3"),
+        ("window = [0, 450]\nlmip-threshold = 2", Mode::Mip, "window = [0, 450]"),
+        ("window = [0, 450]\nlmip-threshold = 2", Mode::Iso, ""),
+        // Light is for what is shaded, which dvr is not unless it says so.
+        ("ambient = 0.3\ngradient = 'forward'", Mode::Iso, "ambient = 0.3\ngradient = 'forward'"),
+        ("ambient = 0.3\ngradient = 'forward'", Mode::Dvr, ""),
+        ("ambient = 0.3\nshading = 'phong'", Mode::Dvr, "ambient = 0.3\nshading = 'phong'"),
+        ("ambient = 0.3\nshading = 'none'", Mode::Iso, "shading = 'none'"),
+        ("ambient = 0.3\nshading = 'phong'", Mode::Mip, ""),
+        ("step = 2\nprobe = 'off'", Mode::Mip, "step = 2\nprobe = 'off'"),
+        ("step = 2\nprobe = 'off'", Mode::Dvr, "step = 2"),
+        ("sampling = 'exact'\nquad = 'simpson'", Mode::Dvr, "quad = 'simpson'"),
+        ("sampling = 'exact'\nquad = 'simpson'", Mode::Mip, "sampling = 'exact'"),
+        ("sampling = 'exact'", Mode::Dvr, "sampling = 'exact'"),
+        ("voxels = 'filtered'", Mode::Iso, ""),
+        ("voxels = 'filtered'", Mode::Dvr, "voxels = 'filtered'"),
+        ("voxels = 'filtered'\nstep = 1", Mode::Iso, "voxels = 'filtered'\nstep = 1"),
+    ];
+
     #[test]
     fn each_option_goes_to_the_modes_that_have_it() {
         let parse = |text: &str| SceneOptions::parse(text, "scene").unwrap();
-        for (all, mode, expected) in [
-            (
-                "iso = 150\ntf = 'cta'\nazimuth = 3",
-                Mode::Iso,
-                "iso = 150\nazimuth = 3",
-            ),
-            (
-                "iso = 150\ntf = 'cta'\nazimuth = 3",
-                Mode::Dvr,
-                "tf = 'cta'\nazimuth = 3",
-            ),
-            (
-                "iso = 150\ntf = 'cta'\nazimuth = 3",
-                Mode::Mip,
-                "azimuth = 3",
-            ),
-            (
-                "window = [0, 450]\nlmip-threshold = 2",
-                Mode::Mip,
-                "window = [0, 450]",
-            ),
-            ("window = [0, 450]\nlmip-threshold = 2", Mode::Iso, ""),
-            // Light is for what is shaded, which dvr is not unless it says so.
-            (
-                "ambient = 0.3\ngradient = 'forward'",
-                Mode::Iso,
-                "ambient = 0.3\ngradient = 'forward'",
-            ),
-            ("ambient = 0.3\ngradient = 'forward'", Mode::Dvr, ""),
-            (
-                "ambient = 0.3\nshading = 'phong'",
-                Mode::Dvr,
-                "ambient = 0.3\nshading = 'phong'",
-            ),
-            (
-                "ambient = 0.3\nshading = 'none'",
-                Mode::Iso,
-                "shading = 'none'",
-            ),
-            ("ambient = 0.3\nshading = 'phong'", Mode::Mip, ""),
-            (
-                "step = 2\nprobe = 'off'",
-                Mode::Mip,
-                "step = 2\nprobe = 'off'",
-            ),
-            ("step = 2\nprobe = 'off'", Mode::Dvr, "step = 2"),
-            (
-                "sampling = 'exact'\nquad = 'simpson'",
-                Mode::Dvr,
-                "quad = 'simpson'",
-            ),
-            (
-                "sampling = 'exact'\nquad = 'simpson'",
-                Mode::Mip,
-                "sampling = 'exact'",
-            ),
-            ("sampling = 'exact'", Mode::Dvr, "sampling = 'exact'"),
-            ("voxels = 'filtered'", Mode::Iso, ""),
-            ("voxels = 'filtered'", Mode::Dvr, "voxels = 'filtered'"),
-            (
-                "voxels = 'filtered'\nstep = 1",
-                Mode::Iso,
-                "voxels = 'filtered'\nstep = 1",
-            ),
-        ] {
+        for &(all, mode, expected) in CASES {
             let expected = parse(&format!("mode = '{mode}'\n{expected}"));
             let of_mode = parse(all).of_mode(mode);
             assert_eq!(of_mode, expected, "{all} {mode}");

@@ -8,7 +8,7 @@
 //! All rules between options are in one table (`rules`).
 //!
 //! What does not determine the picture (its file, the device) is no scene option, but its flags can
-//! be keys of a scene file all the same: any [`group`] can be taken from a [`SceneFile`].
+//! be keys of a scene file all the same: any group of them can be taken from a [`SceneFile`].
 
 mod camera;
 mod carm;

@@ -6,8 +6,8 @@
 //! what settings and error bounds may say ([`super::Setting`], [`super::ToleranceOptions`]) are made of these
 //! tables. Options of other groups than the scene's are looked up by [`unmet`].
 
-use super::{Mode, SceneOptions, Shading};
-use crate::scene::{QuadratureMethod, SamplingMethod, Storage, View};
+use super::{SceneOptions, Shading};
+use crate::scene::{Mode, QuadratureMethod, SamplingMethod, Storage, View};
 
 /// The options among which a name is unique.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -87,11 +87,7 @@ impl<'a> RayCaster<'a> {
     }
 }
 
-fn found(
-    device: &Device,
-    hit: &Buffer<f32>,
-    layers: &DeviceLayers,
-) -> Result<Vec<FirstCrossing>> {
+fn found(device: &Device, hit: &Buffer<f32>, layers: &DeviceLayers) -> Result<Vec<FirstCrossing>> {
     let hit = hit.download(device)?;
     let counts = |layer| -> Result<Vec<u32>> {
         Ok(match layers.download(device, layer)? {

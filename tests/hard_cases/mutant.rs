@@ -77,9 +77,7 @@ fn copy_with(folder: &Path, file: &str, changes: &[(&str, &str)]) {
 }
 
 /// Nodes that lie above the iso value taken for ones below it.
-pub const NEVER_ABOVE: [(&str, &str); 1] = [
-    (
-        "skip.class == CLASS_ABOVE ? FLOATS(1.0f) : FLOATS(-1.0f)",
-        "FLOATS(-1.0f)",
-    ),
-];
+pub const NEVER_ABOVE: [(&str, &str); 1] = [(
+    "skip.class == CLASS_ABOVE ? FLOATS(1.0f) : FLOATS(-1.0f)",
+    "FLOATS(-1.0f)",
+)];

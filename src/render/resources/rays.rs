@@ -81,7 +81,10 @@ impl RaySource {
         volume: &Volume,
         pixels: &[u32],
     ) -> Result<Self> {
-        if let Some(pixel) = pixels.iter().find(|&&pixel| pixel as usize >= size.pixels()) {
+        if let Some(pixel) = pixels
+            .iter()
+            .find(|&&pixel| pixel as usize >= size.pixels())
+        {
             return Err(Error::usage(format!(
                 "pixel {pixel}: a picture of {size} has {}",
                 size.pixels()

@@ -1,7 +1,7 @@
 //! Rays along the voxel grid and through its corners, and eyes on it.
 
-use angioray::gpu::Device;
 use angioray::frame::{KIND, VALUE};
+use angioray::gpu::Device;
 use angioray::scene::{Camera, Filter, Lens};
 use glam::DVec3;
 

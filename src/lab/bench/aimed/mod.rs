@@ -180,7 +180,9 @@ pub fn answers(
     aimed: &[AimedRay],
 ) -> Result<(Report, Vec<FirstCrossing>)> {
     let octree = Octree::build(&target.volume, Leaf::new(4)?, &Silent)?;
-    let forward = aimed.iter().map(|ray| IndexRay::forward(ray.origin, ray.dir));
+    let forward = aimed
+        .iter()
+        .map(|ray| IndexRay::forward(ray.origin, ray.dir));
     let rays: Vec<IndexRay> = forward.collect();
     let crossings = caster.cast(&target.volume, &octree, target.iso, target.caps, &rays)?;
     let report = check(target, number, aimed, &crossings)?;

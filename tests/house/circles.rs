@@ -188,7 +188,7 @@ fn the_files_of_a_module_use_each_other_in_one_direction() {
         .into_iter()
         .filter(|circle| {
             let is_in = |module: &&str| circle.starts_with(&format!("in {module}"));
-            !EXCEPTED.iter().any(|module| is_in(module))
+            !EXCEPTED.iter().any(is_in)
         })
         .collect();
     assert!(found.is_empty(), "{}", found.join("\n"));

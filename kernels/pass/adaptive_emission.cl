@@ -10,7 +10,7 @@
 // halved. What that comparison cannot see where knots are met is added to it (`unseen`). A panel's
 // share is half its share of the light that the ray still gives plus half its share of the ray's
 // length, so that all shares of a ray are 1 at most; a difference of opacity counts for itself and
-// for all that lies behind. A ray ends once its transmittance falls below least_transmission.
+// for all that lies behind. A ray ends once its transmittance falls below min_transmittance.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space), per octree node
@@ -155,7 +155,7 @@ static inline void add_piece(VOXELS voxels, const Emitter *emitter, Accumulated 
 {
     Floats u = FLOATS(0.0f);
     Floats width = FLOATS(1.0f);
-    which = which & accumulated->transmittance >= emitter->cast.least_transmission;
+    which = which & accumulated->transmittance >= emitter->cast.min_transmittance;
     if (!ANY(which))
         return;
     Point points[5]; // a quarter of the panel apart
@@ -189,7 +189,7 @@ static inline void add_piece(VOXELS voxels, const Emitter *emitter, Accumulated 
         points[0].value = counts ? points[4].value : points[0].value;
         points[0].after = counts ? points[4].after : points[0].after;
         points[0].medium = medium_if(counts, points[4].medium, points[0].medium);
-        which = which & u < 1.0f & accumulated->transmittance >= emitter->cast.least_transmission;
+        which = which & u < 1.0f & accumulated->transmittance >= emitter->cast.min_transmittance;
     }
 }
 
@@ -260,7 +260,7 @@ static inline void emit_along(VOXELS voxels, const Emitter *emitter, Accumulated
             CellExit exit = cell_exit(&march->walk, absorbing);
             CellPath path = cell_path(&march->walk, &corners, exit);
             add_cell(voxels, emitter, accumulated, path, share_per_mm, absorbing, samples);
-            cells_go_on(march, exit, absorbing, absorbing & accumulated->transmittance >= cast.least_transmission);
+            cells_go_on(march, exit, absorbing, absorbing & accumulated->transmittance >= cast.min_transmittance);
         }
     }
 }

@@ -5,8 +5,8 @@
 // (lib/light/quadrature.clh, lib/light/preintegrated.clh). Panels tile the ray, so that opacity depends on path
 // length alone. A panel is left out where it lies in transparent nodes wholly: it would add exactly
 // nothing. With HOMOGENEOUS, the samples of a leaf of that class are one panel of the value that stands for
-// the leaf. A ray ends once its transmittance falls below least_transmission: the colour lost is at most
-// least_transmission times the brightest colour.
+// the leaf. A ray ends once its transmittance falls below min_transmittance: the colour lost is at most
+// min_transmittance times the brightest colour.
 //
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
@@ -168,7 +168,7 @@ static inline void add_homogeneous(VOXELS voxels, const PanelContext *context, A
 // Adds panels along rays until each has ended.
 static inline void emit_along(VOXELS voxels, const PanelContext *context, Accumulated *accumulated, SegmentMarch *march, Ints *samples)
 {
-    float min_transmittance = context->emitter.cast.least_transmission;
+    float min_transmittance = context->emitter.cast.min_transmittance;
     Node near = NODE_UNKNOWN;
     for (;;) {
         march->alive = march->alive & accumulated->transmittance >= min_transmittance;

@@ -73,8 +73,8 @@ kernel void abi(global uint *layout)
         layout[n++] = sizeof(value);
         layout[n++] = OFFSET(EmissionCast, step_mm);
         layout[n++] = OFFSET(EmissionCast, unit_length_mm);
-        layout[n++] = OFFSET(EmissionCast, most_absorption);
-        layout[n++] = OFFSET(EmissionCast, least_transmission);
+        layout[n++] = OFFSET(EmissionCast, max_absorption);
+        layout[n++] = OFFSET(EmissionCast, min_transmittance);
         layout[n++] = OFFSET(EmissionCast, knots);
         layout[n++] = OFFSET(EmissionCast, traverse);
         layout[n++] = OFFSET(EmissionCast, bound);

@@ -2,7 +2,7 @@
 #define LANES 1
 #include "lib/light/transfer.clh"
 
-kernel void absorption(uint count, float unit_length_mm, float most_absorption,
+kernel void absorption(uint count, float unit_length_mm, float max_absorption,
                        const global float *opacities, global float *per_mm)
 {
     uint i = get_global_id(0);
@@ -10,6 +10,6 @@ kernel void absorption(uint count, float unit_length_mm, float most_absorption,
         return;
     EmissionCast cast;
     cast.unit_length_mm = unit_length_mm;
-    cast.most_absorption = most_absorption;
+    cast.max_absorption = max_absorption;
     per_mm[i] = absorption_per_mm(cast, opacities[i]);
 }

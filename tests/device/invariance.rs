@@ -19,7 +19,7 @@ use glam::DVec3;
 const SIZE_PX: u32 = 72; // not a multiple of any work-group below but 8
 
 /// Sparse curved tubes over faint noise, a size that no node edge divides.
-fn tubes() -> Volume {
+pub fn tubes() -> Volume {
     volume_of([45, 61, 38], |x, y, z| {
         let tube = |cx: f64, cz: f64, r: f64| {
             let d = (x - cx - 6.0 * (y * 0.11).sin()).hypot(z - cz - 4.0 * (y * 0.17).cos());
@@ -44,7 +44,7 @@ fn mixed() -> Volume {
     })
 }
 
-fn pictures(range_max: f64) -> Vec<Picture> {
+pub fn pictures(range_max: f64) -> Vec<Picture> {
     let window = Window::new(0.0, range_max).unwrap();
     let iso = Picture::Surface {
         iso: range_max * 0.45,

@@ -13,6 +13,7 @@ mod homogeneity;
 mod invariance;
 mod metamorphic;
 mod quadrature;
+mod ray_sources;
 mod refinement;
 mod sampling_alone;
 mod termination;

@@ -107,8 +107,8 @@ device_struct! {
         step_mm: f32,
         unit_length_mm: f32,
         /// The absorption of the unit length at the greatest opacity: −ln(1 − opacity).
-        most_absorption: f32,
-        least_transmission: f32,
+        max_absorption: f32,
+        min_transmittance: f32,
         knots: u32,
         traverse: u32,
         /// The bound of the adaptive quadrature's error.

@@ -116,8 +116,8 @@ fn emission_cast(
     EmissionCast {
         step_mm: view.step_mm(),
         unit_length_mm: transfer.unit_length_mm() as f32,
-        most_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
-        least_transmission: min_transmittance as f32,
+        max_absorption: -(-TransferFunction::MAX_OPACITY).ln_1p() as f32,
+        min_transmittance: min_transmittance as f32,
         knots: on_device.knots,
         traverse: if through_leaves {
             traverse_through_leaves(view)

@@ -147,7 +147,7 @@ fn absorption_keeps_the_digits_of_small_opacities() {
         Args::new()
             .value("count", &(opacities.len() as u32))
             .value("unit_length_mm", &unit_length_mm)
-            .value("most_absorption", &most)
+            .value("max_absorption", &most)
             .read("opacities", &upload(&device, &opacities))
             .write("per_mm", &mut per_mm),
         opacities.len(),

@@ -306,7 +306,7 @@ fn evaluated(
     })
 }
 
-/// The peer's row beside a candidate, all but its times, where it rng such a picture.
+/// The peer's row beside a candidate, all but its times, where it draws such a picture.
 fn peer_row(
     peer: &mut Peer,
     dataset: &Dataset,

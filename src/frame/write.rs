@@ -43,3 +43,20 @@ pub fn write(
             .map_err(|cause| Error::writing(path, "write", &cause)),
     })
 }
+
+impl Frame {
+    /// Saves the picture in the format of the path's extension, whole or not at all: as displayed into PNG, JPEG
+    /// and WebP; as linear light with all its layers into EXR and NPY. [`write`] has options.
+    ///
+    /// # Errors
+    /// An extension that names no format (usage); a format for display, and a frame without its display plane;
+    /// a path that cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let mut encoding = Encoding::new(Format::from_path(path)?);
+        if encoding.format.carries_layers() {
+            encoding.layers = self.layers.iter().map(|(layer, _)| layer).collect();
+        }
+        write(path, self, &encoding, &[])
+    }
+}

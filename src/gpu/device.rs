@@ -40,6 +40,14 @@ impl Device {
         Ok(found()?.into_iter().map(|(_, _, info)| info).collect())
     }
 
+    /// Opens the first GPU; without one, the first device.
+    ///
+    /// # Errors
+    /// As [`Device::list`].
+    pub fn first() -> Result<Self> {
+        Self::select("")
+    }
+
     /// Opens the device that `choice` names: an ID of [`Device::list`], `cpu`, `gpu`, part of a
     /// device's or platform's name in any case, or nothing for the first GPU, else the first device.
     ///

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::memory;
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::volume::{Volume, Voxel};
 use crate::with_voxels;
 
@@ -34,6 +34,14 @@ struct Nodes<'a> {
 const NO_RANGE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 impl Octree {
+    /// The octree of a volume with leaves of the default size.
+    ///
+    /// # Errors
+    /// As [`Octree::build`].
+    pub fn of(volume: &Volume) -> Result<Self> {
+        Self::build(volume, Leaf::default(), &Silent)
+    }
+
     /// Besides the tree itself it takes eight bytes a node while it is built.
     ///
     /// # Errors

@@ -4,6 +4,7 @@
 use crate::cli_place;
 use crate::common;
 
+use angioray::Subject;
 use angioray::extent::Dims;
 use angioray::frame::error::{color_error, depth_error, value_error};
 use angioray::frame::{Frame, Layer, Wanted, read_metadata};
@@ -14,7 +15,6 @@ use angioray::progress::Silent;
 use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::Mode;
-use angioray::subject::Subject;
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use cli_place::{Place, stderr};
 

@@ -1,5 +1,6 @@
 //! One hard case on trial: its scenes rendered on device and reference and checked, then its mutants.
 
+use angioray::Subject;
 use angioray::frame::{DEPTH, Frame, KIND, Kind, NORMAL, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::lab::hardcases::HardCase;
@@ -9,7 +10,6 @@ use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{Picture, Scene, Traverse};
-use angioray::subject::Subject;
 use angioray::volume::Volume;
 
 use crate::common::{self, assert_sound, on_reference};

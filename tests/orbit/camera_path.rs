@@ -1,9 +1,9 @@
 //! An orbit: where its cameras are, and that it closes.
 
+use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
 use angioray::scene::{FrameCount, Orbit, OrbitAxis};
-use angioray::subject::Subject;
 use glam::DVec3;
 
 fn subject() -> Subject {

@@ -1,9 +1,9 @@
 //! Camera options against cameras worked out by hand.
 
+use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens};
-use angioray::subject::Subject;
 use clap::Parser;
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
 //! Scene options: flags and scene files, alone and together, to a scene and back.
 
+use angioray::Subject;
 use angioray::extent::{ImageSize, Range};
 use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
 use angioray::scene::{Gradient, Lens, Picture, Precomputed, Projection};
-use angioray::subject::Subject;
 use clap::Parser;
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
 //! Which sampling a scene has: what is wanted, what that implies, and what goes with it.
 
+use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
 use angioray::scene::{Emission, Picture, QuadratureMethod, SamplingMethod};
-use angioray::subject::Subject;
 use glam::DVec3;
 
 const SUBJECT: Subject = Subject {

@@ -29,7 +29,7 @@ use std::path::Path;
 use self::source::Source;
 use crate::error::{Error, Result};
 use crate::extent::Dims;
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::volume::{NonFinite, Volume, VoxelType};
 
 /// What the user may say about reading a file.
@@ -61,6 +61,17 @@ pub type Accept<'a> = &'a dyn Fn(Dims, VoxelType) -> Result<()>;
 /// (failed); a frame the file does not have, an incomplete headerless description (usage).
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Volume> {
     read_if(path, options, progress, &|_, _| Ok(()))
+}
+
+impl Volume {
+    /// Opens a volume file of any format that is recognised: the first volume of a series, values that are not
+    /// finite replaced by the smallest finite one. [`read`] has options and reports progress.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        read(path.as_ref(), &ReadOptions::default(), &Silent)
+    }
 }
 
 /// As [`read`], if `accept` accepts what the header says, which it is asked before any voxel is read.

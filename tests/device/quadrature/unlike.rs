@@ -1,11 +1,11 @@
 //! Volumes of strongly unlike spacings: dvr's default takes the rule that has no steps, which keeps its
 //! bound there at a cost that does not grow with the ratio.
 
+use angioray::Subject;
 use angioray::extent::ImageSize;
 use angioray::frame::STEPS;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens, Picture, Quadrature, QuadratureMethod, Scene};
-use angioray::subject::Subject;
 use angioray::volume::{Geometry, Volume};
 use glam::{DMat3, DVec3};
 

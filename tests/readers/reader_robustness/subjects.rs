@@ -5,13 +5,13 @@ use std::fs;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
+use angioray::Subject;
 use angioray::extent::{ImageSize, Range};
 use angioray::frame::{Encoding, Format, Frame, Wanted, read_metadata, write};
 use angioray::octree::{Leaf, Octree};
 use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::scene::TransferFile;
-use angioray::subject::Subject;
 use angioray::volume::{Histogram, RawLayout, ReadOptions, read, suggested_iso};
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;

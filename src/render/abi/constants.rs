@@ -15,15 +15,24 @@ pub trait KernelEnum: Copy {
     fn number(self) -> u32;
 }
 
-/// Gives the variants of an enum their numbers and names in the kernels; with `pub enum`, declares it too.
+/// Gives the variants of an enum their numbers and names in the kernels; after a semicolon a variant whose
+/// number no kernel tests, since it has a pass of its own. With `pub enum`, declares the enum too.
 macro_rules! kernel_enum {
-    ($type:ty { $($variant:pat => $name:ident = $number:literal),* $(,)? }) => {
+    (
+        $type:ty {
+            $($variant:pat => $name:ident = $number:literal),* $(,)?
+            $(; $unnamed:pat => $own:literal)?
+        }
+    ) => {
         impl KernelEnum for $type {
             const CONSTANTS: &'static [(&'static str, u32)] =
                 &[$((stringify!($name), $number)),*];
 
             fn number(self) -> u32 {
-                match self { $($variant => $number),* }
+                match self {
+                    $($variant => $number,)*
+                    $($unnamed => $own,)?
+                }
             }
         }
     };
@@ -96,8 +105,8 @@ kernel_enum! {
         QuadratureMethod::Simpson => QUADRATURE_SIMPSON = 2,
         QuadratureMethod::Romberg => QUADRATURE_ROMBERG = 3,
         QuadratureMethod::Rk4 => QUADRATURE_RK4 = 4,
-        QuadratureMethod::Preintegrated => QUADRATURE_PREINTEGRATED = 5,
-        QuadratureMethod::Adaptive => QUADRATURE_ADAPTIVE = 6,
+        QuadratureMethod::Preintegrated => QUADRATURE_PREINTEGRATED = 5;
+        QuadratureMethod::Adaptive => 6
     }
 }
 

@@ -11,12 +11,13 @@ mkdir -p "$POCL_CACHE_DIR"
 # Here tests that need OpenCL or a browser must not skip, where setup.sh can bring a browser.
 chromium=1
 command -v chromium chromium-browser google-chrome >/dev/null || chromium=0
-export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}" REQUIRE_CHROMIUM="${REQUIRE_CHROMIUM:-$chromium}"
+export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}" REQUIRE_CHROMIUM="${REQUIRE_CHROMIUM:-$chromium}" REQUIRE_EXAMPLES=1
 
 cargo fmt --check
 cargo clippy --locked --all-targets -- -D warnings
 if cargo nextest --version >/dev/null 2>&1; then
     cargo nextest run --locked --no-fail-fast
+    cargo test --locked --doc
 else
     cargo test --locked --no-fail-fast
 fi

@@ -12,3 +12,4 @@ mod cli_hardcase;
 mod cli_info;
 mod cli_limits;
 mod cli_program;
+mod library_examples;

@@ -1,6 +1,6 @@
 //! Rays from a list of pixels and from buffers find what a camera's rays find.
 
-use angioray::frame::{Kind, Wanted};
+use angioray::frame::{CERTIFICATE, Certificate, Kind, Wanted};
 use angioray::lab::bench::aimed::{Target, rays, target};
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
@@ -46,10 +46,13 @@ fn listed_pixels_are_those_of_the_whole_picture_and_others_are_empty() {
         let some = some.unwrap().frame;
         let seen = whole.picked(&listed).unwrap();
         assert!(seen.bit_equal(&some.picked(&listed).unwrap()));
-        // Other pixels are what they are where everything is clipped away.
+        // Other pixels are as where everything is clipped away, but that nothing is proven of them.
         let mut clipped = scene.clone();
         clipped.clip_planes = vec![ClipPlane::new(DVec3::X, -1e6).unwrap()];
-        let nothing = renderer.render(&clipped, Wanted::ALL).unwrap().frame;
+        let mut nothing = renderer.render(&clipped, Wanted::ALL).unwrap().frame;
+        if let Some(certificates) = nothing.plane_mut(CERTIFICATE) {
+            certificates.fill(Certificate::Undecided as u32);
+        }
         let unseen = nothing.picked(&others).unwrap();
         assert!(unseen.bit_equal(&some.picked(&others).unwrap()));
         // The control: they are not empty in the whole picture.
@@ -140,9 +143,11 @@ fn a_ray_is_looked_at_from_its_least_t_to_its_greatest() {
         let before = cast(&mut caster, &target, &with(|t| [0.0, 0.99 * t]));
         assert!(before.iter().all(|one| one.kind == Kind::Nothing));
         let beyond = cast(&mut caster, &target, &with(|t| [0.0, 1.01 * t]));
-        let same =
-            |(one, hit): (&FirstCrossing, &&FirstCrossing)| (one.t, one.kind) == (hit.t, hit.kind);
-        assert!(beyond.iter().zip(&hits).all(same));
+        // Where a ray ends within a cell its cubic has other coefficients: the root is off by their rounding.
+        for (one, hit) in beyond.iter().zip(&hits) {
+            let close = (one.t - hit.t).abs() <= 1e-5 * (1.0 + hit.t);
+            assert!(close && one.kind == hit.kind, "{one:?} {hit:?}");
+        }
         ended += before.len();
         let behind = cast(&mut caster, &target, &with(|t| [1.01 * t, f32::INFINITY]));
         for (one, hit) in behind.iter().zip(&hits) {

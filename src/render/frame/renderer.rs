@@ -155,7 +155,8 @@ impl<'a> Renderer<'a> {
         self.render_rays(scene, wanted, None)
     }
 
-    /// Casts some pixels of a scene, counted row by row: the frame's others are as if their rays met nothing.
+    /// Casts some pixels of a scene, counted row by row. The frame's others are empty: transparent, with every
+    /// layer's value where nothing is known ([`Layer::empty`](crate::frame::Layer::empty)).
     ///
     /// # Errors
     /// As [`Renderer::render`]; a pixel outside the picture; no pixels.

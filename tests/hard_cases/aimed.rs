@@ -229,13 +229,13 @@ fn a_cast_that_loses_rays_is_caught() {
         // A crossing in the gap between two cells' cubics lost.
         (
             "lib/find/crossing.clh",
-            "which & search->begun & (inside ^ search->inside)",
+            "which & state->begun & (inside ^ state->inside)",
             "NO_LANE & (inside ^ search->inside)",
         ),
         // A certificate that ignores rounding.
         (
             "lib/find/crossing.clh",
-            "return spread * 4e-6f + iso_error;",
+            "return spread * FIELD_ROUNDING + iso_error;",
             "return FLOATS(1e-30f);",
         ),
     ] {

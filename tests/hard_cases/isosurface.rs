@@ -42,8 +42,8 @@ const NO_TURNS: Mutant = kernel(
 const SEVEN_CORNERS: Mutant = kernel(
     "lib/volume/cubic.clh",
     &[(
-        "for (uint i = 1u; i < 8u; i++)\n        most",
-        "for (uint i = 1u; i < 7u; i++)\n        most",
+        "for (uint i = 1u; i < 8u; i++)\n        max = max_of",
+        "for (uint i = 1u; i < 7u; i++)\n        max = max_of",
     )],
 );
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the report that the README shows, and the pictures of it, anew in docs/report. Needs Chromium for
+# Makes the report that docs/measuring.md shows, and the pictures of it, anew in docs/report. Needs Chromium for
 # the pictures. ANGIORAY names the program; without it a release build is made.
 set -euo pipefail
 program="${ANGIORAY:+$(realpath "$ANGIORAY")}"

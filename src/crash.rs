@@ -50,12 +50,12 @@ mod signals {
     ];
 
     /// More kept files than a process uses.
-    const MOST_SUSPECTS: usize = 1024;
+    const MAX_SUSPECTS: usize = 1024;
 
     // What the handler reads: strings that are never freed.
     static CLAUSE: AtomicPtr<c_char> = AtomicPtr::new(null_mut());
-    static SUSPECTS: [AtomicPtr<c_char>; MOST_SUSPECTS] =
-        [const { AtomicPtr::new(null_mut()) }; MOST_SUSPECTS];
+    static SUSPECTS: [AtomicPtr<c_char>; MAX_SUSPECTS] =
+        [const { AtomicPtr::new(null_mut()) }; MAX_SUSPECTS];
     static CATCHING: AtomicBool = AtomicBool::new(false);
     static SUSPECTS_SET: AtomicUsize = AtomicUsize::new(0);
 

@@ -7,6 +7,7 @@
 
 pub mod abrupt;
 pub mod batch;
+pub mod cache;
 pub mod cli;
 pub mod crash;
 pub mod error;
@@ -14,7 +15,6 @@ pub mod extent;
 pub mod frame;
 pub mod gpu;
 pub mod input;
-pub mod kept;
 pub mod lab;
 pub mod memory;
 mod number_text;

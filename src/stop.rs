@@ -1,6 +1,6 @@
 //! Being asked to stop: Ctrl-C, or a scheduler's SIGTERM.
 //!
-//! Long work [`listen`]s once and looks at [`asked`] between its parts. What it has finished by then
+//! Long work calls [`listen`] once and checks [`requested`] between its parts. What it has finished by then
 //! is whole, and it ends with [`Error::stopped`](crate::error::Error::stopped). Other work
 //! [ends at once](end_at_once).
 
@@ -14,9 +14,9 @@ use signal_hook::low_level;
 use crate::error::{Error, ErrorKind, Result};
 use crate::output::forget_unfinished;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on the first SIGINT or SIGTERM only sets what [`asked`] tells, and the second ends the
+/// From now on the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second ends the
 /// process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so
 /// that `nohup` keeps its meaning.
 ///
@@ -24,7 +24,7 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// The system lets no signals be caught.
 pub fn listen(say: impl Fn(Signal) -> ErrorKind + Send + 'static) -> Result<()> {
     spawn(move || {
-        let signal = match ASKED.swap(true, Ordering::Relaxed) {
+        let signal = match REQUESTED.swap(true, Ordering::Relaxed) {
             false => Signal::First,
             true => Signal::Second,
         };
@@ -68,8 +68,8 @@ fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
 }
 
 /// Whether it is time to stop.
-pub fn asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+pub fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
 }
 
 /// What work came to, where `check` fails when it is time to stop: a failure then is the stop, not a

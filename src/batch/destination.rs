@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::{self, Animation, Encoding, Frame, Reel, is_whole};
+use crate::frame::{self, Animation, Encoding, Frame, Reel, is_complete};
 
 use super::{FinishedFrames, FrameNames};
 
@@ -114,7 +114,7 @@ impl Destination {
     pub fn holds(&self, index: u32, size: ImageSize, scene: &str, from: &Provenance) -> bool {
         match self {
             Self::Pictures { names, encoding } => {
-                is_whole(&names.path(index), size, encoding, &from.metadata(scene))
+                is_complete(&names.path(index), size, encoding, &from.metadata(scene))
             }
             Self::Animation { finished, .. } => (finished.as_ref())
                 .is_some_and(|finished| finished.holds(index, size, &from.metadata(scene))),

@@ -17,12 +17,12 @@ use crate::options::{Count, FilePath, SceneFile, Switch, Threshold, VolumeOption
 use crate::progress::Progress;
 use crate::volume::percentiles;
 
-use super::engine::{DeviceOptions, Engine};
-use super::load::Source;
+use super::backend::{Backend, DeviceOptions};
 use super::phantom::Seed;
 use super::progress::Bars;
 use super::repeat::command_line;
 use super::scene::SceneArgument;
+use super::source::Source;
 use super::stopping;
 use super::terminal::{lines_to_stdout, message, note};
 
@@ -142,10 +142,10 @@ impl BenchArguments {
         } else {
             stopping::at_once("without --output nothing is saved")?;
         }
-        let Engine::Device {
+        let Backend::Device {
             device,
             options: use_of_device,
-        } = Engine::open(&device)?
+        } = Backend::open(&device)?
         else {
             return Err(Error::usage(
                 "the reference cannot be measured: it is what others are compared with",

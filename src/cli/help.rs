@@ -135,7 +135,7 @@ fn widths(command: &Command) -> Vec<((bool, Option<String>), usize)> {
         };
         let group = group_of(argument);
         match widths.iter_mut().find(|(other, _)| *other == group) {
-            Some((_, most)) => *most = width.max(*most),
+            Some((_, max_width)) => *max_width = width.max(*max_width),
             None => widths.push((group, width)),
         }
     }
@@ -271,7 +271,7 @@ mod tests {
         let text = |text: Option<&clap::builder::StyledStr>| {
             text.map(ToString::to_string).unwrap_or_default()
         };
-        let is_whole = |option: &Arg| {
+        let is_complete = |option: &Arg| {
             let (short, long) = (text(option.get_help()), text(option.get_long_help()));
             let (before, _) = long.rsplit_once(" [default: ").unwrap_or((&long, ""));
             let (short, _) = short.rsplit_once(" [default: ").unwrap_or((&short, ""));
@@ -284,7 +284,7 @@ mod tests {
         let cut_off: Vec<String> = program
             .get_subcommands()
             .flat_map(Command::get_arguments)
-            .filter(|option| !is_whole(option))
+            .filter(|option| !is_complete(option))
             .map(|option| option.get_id().to_string())
             .collect();
         assert!(
@@ -293,7 +293,7 @@ mod tests {
         );
         // The control: what does not fit is cut off.
         let cut = shortened_option(Arg::new("x").help("One two three four"), "", 8);
-        assert!(!is_whole(&cut));
+        assert!(!is_complete(&cut));
     }
 
     #[test]

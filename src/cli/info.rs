@@ -13,9 +13,9 @@ use crate::options::{SceneOptions, Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
 use super::carried::Carried;
-use super::load::{Loaded, Source};
 use super::progress::Bars;
 use super::scene::SceneArgument;
+use super::source::{Loaded, Source};
 use super::stats::VolumeStats;
 use super::terminal::{Lines, json_to_stdout, lines_to_stdout};
 

@@ -6,10 +6,10 @@ use crate::error::Result;
 use crate::options::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::volume::files_of;
 
-use super::engine::DeviceOptions;
-use super::load::Source;
+use super::backend::DeviceOptions;
 use super::outputs::OutputOptions;
 use super::scene::SceneArgument;
+use super::source::Source;
 
 #[derive(clap::Args)]
 pub struct JobArguments {

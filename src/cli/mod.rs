@@ -1,16 +1,15 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
+mod backend;
 mod bench;
 mod carried;
 mod compare;
 mod completion;
 mod devices;
-mod engine;
 mod hardcase;
 mod help;
 mod info;
 mod job;
-mod load;
 mod man;
 mod orbit;
 mod outputs;
@@ -20,6 +19,7 @@ mod render;
 mod repeat;
 mod replay;
 mod scene;
+mod source;
 mod stats;
 mod stopping;
 mod terminal;

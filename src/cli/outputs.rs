@@ -59,11 +59,11 @@ impl OutputOptions {
     /// drops what its format cannot hold, another mode the layers that it does not have.
     pub fn over_file(self, mut file: Self, mode: Option<Mode>) -> Self {
         if let Some(mode) = mode {
-            file.aov = file.aov.and_then(|layers| layers.kept_in(mode));
+            file.aov = file.aov.and_then(|layers| layers.limited_to(mode));
         }
         if let Some(FilePath(path)) = &self.output {
             file =
-                file.keeping(|option| has_needs(Group::Output, option, |need| holds(path, need)));
+                file.retaining(|option| has_needs(Group::Output, option, |need| holds(path, need)));
         }
         self.over(file)
     }
@@ -288,7 +288,7 @@ impl Layers {
     }
 
     /// Without those that the mode does not have; nothing where none is left.
-    fn kept_in(self, mode: Mode) -> Option<Self> {
+    fn limited_to(self, mode: Mode) -> Option<Self> {
         match self {
             Self::All => Some(Self::All),
             Self::Named(mut layers) => {

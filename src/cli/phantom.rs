@@ -227,7 +227,7 @@ fn write_phantom(
         output.display(),
         spec.dims,
         spec.voxel_type,
-        made.truth
+        made.definition
     ));
     if let Some(tree) = &made.tree {
         write_tree(&tree_file, tree)?;

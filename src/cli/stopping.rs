@@ -25,13 +25,13 @@ pub fn between_parts(part: &'static str, ended: ErrorKind) -> Result<()> {
     })
 }
 
-/// Work that ends at once; `kept` is a sentence on what is left of it.
+/// Work that ends at once; `left` is a sentence on what is left of it.
 ///
 /// # Errors
 /// The system lets no signals be caught.
-pub fn at_once(kept: &'static str) -> Result<()> {
+pub fn at_once(left: &'static str) -> Result<()> {
     stop::end_at_once(move || {
-        let stopped = Error::stopped(format!("stopped before the end; {kept}"));
+        let stopped = Error::stopped(format!("stopped before the end; {left}"));
         error(&stopped.hint("run the same command again"));
         ErrorKind::Stopped
     })

@@ -264,12 +264,12 @@ mod tests {
 
     /// The places in the sources that print by themselves.
     fn printing(text: &str) -> Vec<&str> {
-        const WAYS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
+        const CALLS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
         let code = text.split("#[cfg(test)]").next().unwrap_or_default();
         let lines = code
             .lines()
             .filter(|line| !line.trim_start().starts_with("//"));
-        let lines = lines.filter(|line| WAYS.iter().any(|way| line.contains(way)));
+        let lines = lines.filter(|line| CALLS.iter().any(|call| line.contains(call)));
         lines.collect()
     }
 

@@ -6,9 +6,9 @@ use crate::lab::tolerance::{self, Choice, SEED, Task};
 use crate::options::{ErrorBound, SceneOptions};
 use crate::scene::Camera;
 
-use super::engine::Caster;
-use super::load::Loaded;
+use super::backend::Caster;
 use super::progress::Bars;
+use super::source::Loaded;
 use super::terminal::note;
 
 /// Chooses the cheapest way of following rays that keeps a bound, and prints the choice. The reference has

@@ -152,7 +152,7 @@ impl Builder {
             if let Some(status) = self.child.try_wait().map_err(|cause| failed(&cause))? {
                 return Err(self.failure(request, status));
             }
-            if stop::asked() || no_longer_wanted.load(Ordering::Relaxed) {
+            if stop::requested() || no_longer_wanted.load(Ordering::Relaxed) {
                 return Err(Error::stopped("stopped while kernels were built"));
             }
             std::thread::sleep(POLL);

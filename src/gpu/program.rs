@@ -8,9 +8,9 @@ use std::thread::available_parallelism;
 
 use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 
+use crate::cache::mark_used;
 use crate::crash;
 use crate::error::{Error, Result};
-use crate::kept::asked_for;
 use crate::progress::Stage;
 
 use super::arranged::{Arranged, arranged};
@@ -167,7 +167,7 @@ impl<'a> Plan<'a> {
         let binary = binary::read(path)?;
         crash::suspect(path);
         let kernel = self.taken_from(device, &binary)?;
-        asked_for(path);
+        mark_used(path);
         Some(kernel)
     }
 

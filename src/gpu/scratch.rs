@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::kept;
+use crate::cache;
 
 /// The start of such folders' names.
 const PREFIX: &str = "angioray-driver-";
@@ -43,7 +43,7 @@ impl Scratch {
             named("XDG_RUNTIME_DIR"),
             Some("/dev/shm".into()),
             Some(std::env::temp_dir()),
-            kept::users_folder(),
+            cache::user_folder(),
             Some("/var/tmp".into()),
         ];
         let mut places = places.into_iter().flatten();
@@ -123,7 +123,7 @@ impl Scratch {
         if !there.is_dir() || !same_owner(&there, &own) {
             return false;
         }
-        match kept::open(&folder.join(HELD)) {
+        match cache::open(&folder.join(HELD)) {
             Ok(lock) => lock.try_lock().is_ok(),
             Err(_) => {
                 let age = there.modified().ok().and_then(|made| made.elapsed().ok());
@@ -157,7 +157,7 @@ fn is_fit(place: &Path) -> bool {
             return false;
         }
     }
-    place.is_absolute() && place.is_dir() && kept::check_takes_files(place).is_ok()
+    place.is_absolute() && place.is_dir() && cache::check_writable(place).is_ok()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ pub(crate) trait Keys: Sized {
 
     /// The same options without those whose key does not pass.
     #[must_use]
-    fn keeping(self, passes: impl Fn(&str) -> bool) -> Self;
+    fn retaining(self, passes: impl Fn(&str) -> bool) -> Self;
 }
 
 /// Declares a struct whose fields are all optional, with `over`: what it says, and for what it
@@ -45,7 +45,7 @@ macro_rules! group {
                 keys
             }
 
-            fn keeping(self, passes: impl Fn(&str) -> bool) -> Self {
+            fn retaining(self, passes: impl Fn(&str) -> bool) -> Self {
                 Self {
                     $($field: self.$field.filter(|_| {
                         passes(&stringify!($field).replace('_', "-"))

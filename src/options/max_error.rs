@@ -78,7 +78,7 @@ impl SceneOptions {
     /// Without what an error bound takes the place of.
     #[must_use]
     pub fn undecided(self) -> Self {
-        self.keeping(|option| !is_decided(option))
+        self.retaining(|option| !is_decided(option))
     }
 }
 
@@ -143,14 +143,14 @@ mod tests {
         let mut scene = parse("step = 2");
         let over = none().over_file(bound("rmse:0.1"), &parse("step = 1"), &mut scene);
         assert_eq!((over, scene), (none(), parse("step = 2")));
-        for (of_file, flags, kept) in [
+        for (of_file, flags, remaining) in [
             ("rmse:0.1", "iso = 1", true),
             ("depth:0.1", "mode = 'iso'", true),
             ("depth:0.1", "mode = 'mip'", false),
         ] {
             let over = none().over_file(bound(of_file), &parse(flags), &mut parse(""));
-            assert_eq!(over == bound(of_file), kept, "{of_file} {flags}");
-            assert_eq!(over == none(), !kept);
+            assert_eq!(over == bound(of_file), remaining, "{of_file} {flags}");
+            assert_eq!(over == none(), !remaining);
         }
     }
 }

@@ -9,17 +9,17 @@ impl SceneOptions {
     /// when the flag is a view, or the iso value when it is another mode, goes with it.
     #[must_use]
     pub fn over(self, file: Self) -> Self {
-        let kept = self.kept_of(&file);
-        self.or(kept)
+        let remaining = self.compatible_with(&file);
+        self.or(remaining)
     }
 
     /// The options of a scene file that still apply when these are the flags.
-    fn kept_of(&self, file: &Self) -> Self {
+    fn compatible_with(&self, file: &Self) -> Self {
         let replaced = REPLACED.iter().filter(|row| (row.by)(self, file));
         let replaced: Vec<&str> = replaced.flat_map(|row| row.options).copied().collect();
-        let kept = file.clone().keeping(|option| !replaced.contains(&option));
-        let together = self.clone().or(kept.clone());
-        kept.keeping(|option| {
+        let remaining = file.clone().retaining(|option| !replaced.contains(&option));
+        let together = self.clone().or(remaining.clone());
+        remaining.retaining(|option| {
             has_needs(Group::Scene, option, |need| {
                 !self.rules_out(need, file, &together)
             })

@@ -126,7 +126,7 @@ impl SceneOptions {
     }
 
     fn without_steps(self) -> Self {
-        self.keeping(|option| !needs(option, Need::Steps))
+        self.retaining(|option| !needs(option, Need::Steps))
     }
 
     /// Returns the options as the text of a scene file.

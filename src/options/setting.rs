@@ -77,13 +77,13 @@ impl SceneOptions {
     /// What is seen, without how rays are followed.
     #[must_use]
     pub fn what(&self) -> Self {
-        self.clone().keeping(|option| !is_how(option))
+        self.clone().retaining(|option| !is_how(option))
     }
 
     /// How rays are followed, as far as it is given.
     #[must_use]
     pub fn how(&self) -> Self {
-        self.clone().keeping(is_how)
+        self.clone().retaining(is_how)
     }
 }
 

@@ -117,9 +117,9 @@ fn maker(name: &str) -> Option<&str> {
 
 /// A word for this machine among those that share a file system.
 fn machine() -> String {
-    let told = fs::read_to_string("/proc/sys/kernel/hostname").ok();
-    let told = told.or_else(|| std::env::var("COMPUTERNAME").ok());
-    let hash = blake3::hash(told.unwrap_or_default().as_bytes());
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let name = name.or_else(|| std::env::var("COMPUTERNAME").ok());
+    let hash = blake3::hash(name.unwrap_or_default().as_bytes());
     hash.to_hex()[..8].to_owned()
 }
 

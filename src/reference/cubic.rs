@@ -87,7 +87,7 @@ impl Cubic {
     pub fn monotone_ends(&self) -> Parameters {
         let mut ends: Parameters = smallvec![0.0];
         let differences = self.differences();
-        let scale = differences.iter().fold(0.0, |most, d| d.abs().max(most));
+        let scale = differences.iter().fold(0.0, |max, d| d.abs().max(max));
         if scale > 0.0 {
             // The derivative k2·s² + k1·s + k0, by the form without cancellation.
             let [a, b, c] = differences.map(|d| d / scale);

@@ -260,7 +260,7 @@ impl Points<5> for Place {
 }
 
 /// The integrand on one segment.
-struct Stretch<P> {
+struct Integrand<P> {
     phi: Cubic,
     /// Rounding error of Φ.
     noise: f64,
@@ -268,7 +268,7 @@ struct Stretch<P> {
     points: P,
 }
 
-impl<P> Stretch<P> {
+impl<P> Integrand<P> {
     /// What is summed, and absorption per mm, at a point.
     fn emits<const N: usize>(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; N], f64)
     where
@@ -350,17 +350,17 @@ impl<'a, const N: usize> Ray<'a, N> {
             if self.medium.is_clear(low, high) || segment.length_mm() <= 0.0 {
                 continue;
             }
-            let stretch = Stretch {
+            let integrand = Integrand {
                 phi: Field::<T>::along(&corners, &segment),
                 noise: NOISE_SHARE * low.abs().max(high.abs()),
                 length_mm: segment.length_mm(),
                 points: points(&segment),
             };
-            for ends in stretch.breaks(self.medium).windows(2) {
+            for ends in integrand.breaks(self.medium).windows(2) {
                 let (from, to) = (ends[0], ends[1]);
-                let ramp = self.medium.ramp(stretch.phi.at(0.5 * (from + to)));
+                let ramp = self.medium.ramp(integrand.phi.at(0.5 * (from + to)));
                 if from < to && !ramp.is_clear() {
-                    self.add(&stretch, ramp, from, to);
+                    self.add(&integrand, ramp, from, to);
                 }
             }
             if self.transmittance < DARK {
@@ -370,26 +370,26 @@ impl<'a, const N: usize> Ray<'a, N> {
         walked
     }
 
-    fn add<P: Points<N>>(&mut self, stretch: &Stretch<P>, ramp: &Ramp, from: f64, to: f64) {
-        let whole = self.panel(stretch, ramp, from, to);
-        self.refine(stretch, ramp, (from, to), whole);
+    fn add<P: Points<N>>(&mut self, integrand: &Integrand<P>, ramp: &Ramp, from: f64, to: f64) {
+        let whole = self.panel(integrand, ramp, from, to);
+        self.refine(integrand, ramp, (from, to), whole);
     }
 
     /// One step of the collocation rule.
     fn panel<P: Points<N>>(
         &self,
-        stretch: &Stretch<P>,
+        integrand: &Integrand<P>,
         ramp: &Ramp,
         from: f64,
         to: f64,
     ) -> Panel<N> {
         let rule = &*GAUSS;
-        let length_mm = stretch.length_mm * (to - from);
+        let length_mm = integrand.length_mm * (to - from);
         let mut light = [[0.0; N]; NODES];
         let mut depth = [0.0; NODES];
         for i in 0..NODES {
             let s = from + (to - from) * rule.nodes[i];
-            let (emitted, absorption) = stretch.emits(self.medium, ramp, s);
+            let (emitted, absorption) = integrand.emits(self.medium, ramp, s);
             light[i] = emitted;
             depth[i] = absorption * length_mm;
         }
@@ -411,7 +411,7 @@ impl<'a, const N: usize> Ray<'a, N> {
     /// a piece too short to halve, as one of constant colour.
     fn refine<P: Points<N>>(
         &mut self,
-        stretch: &Stretch<P>,
+        integrand: &Integrand<P>,
         ramp: &Ramp,
         (from, to): (f64, f64),
         whole: Panel<N>,
@@ -420,28 +420,28 @@ impl<'a, const N: usize> Ray<'a, N> {
             return;
         }
         let middle = 0.5 * (from + to);
-        let first = self.panel(stretch, ramp, from, middle);
-        let second = self.panel(stretch, ramp, middle, to);
+        let first = self.panel(integrand, ramp, from, middle);
+        let second = self.panel(integrand, ramp, middle, to);
         let halves = first.then(second);
         let off = (0..N).fold(0.0_f64, |off, c| {
             off.max((whole.light[c] - halves.light[c]).abs())
         });
         let leaves = |panel: Panel<N>| (-panel.depth).exp();
         let estimate = off + self.brightest * (leaves(whole) - leaves(halves)).abs();
-        let length_mm = stretch.length_mm * (to - from);
+        let length_mm = integrand.length_mm * (to - from);
         let allowed = (self.tolerance_per_mm * length_mm).max(FLOOR);
-        let noise = self.medium.noise_per_mm(ramp, stretch.noise) * length_mm;
+        let noise = self.medium.noise_per_mm(ramp, integrand.noise) * length_mm;
         let left = leaves(halves);
         let agree = self.transmittance * estimate <= allowed || estimate <= noise;
-        let is_steady = || stretch.points.is_steady(from, to);
+        let is_steady = || integrand.points.is_steady(from, to);
         let is_faint = self.transmittance * self.brightest * (1.0 - left) <= FLOOR;
         if agree && halves.depth <= MAX_DEPTH_OF_PIECE && (is_faint || is_steady()) {
             self.gather(halves.light, left);
         } else if to - from > SHORTEST {
-            self.refine(stretch, ramp, (from, middle), first);
-            self.refine(stretch, ramp, (middle, to), second);
+            self.refine(integrand, ramp, (from, middle), first);
+            self.refine(integrand, ramp, (middle, to), second);
         } else {
-            let (light, _) = stretch.emits(self.medium, ramp, middle);
+            let (light, _) = integrand.emits(self.medium, ramp, middle);
             self.gather(light.map(|c| c * (1.0 - left)), left);
         }
     }

@@ -232,9 +232,9 @@ impl Volume {
     /// must not overflow, and the smallest are coarser.
     fn exponent_off(&self, largest: f64) -> f64 {
         /// A difference and its multiples below this have room.
-        const MOST_EXPONENT: f64 = 120.0;
+        const MAX_EXPONENT: f64 = 120.0;
         let to_one = largest.log2().floor();
-        let least = match &self.voxels {
+        let min = match &self.voxels {
             Voxels::F32(voxels) if to_one > 0.0 => voxels
                 .par_iter()
                 .map(|voxel| voxel.abs())
@@ -242,9 +242,9 @@ impl Volume {
                 .reduce(|| f32::INFINITY, f32::min),
             _ => return to_one,
         };
-        let exactly = (least / f32::MIN_POSITIVE).log2().floor();
+        let exactly = (min / f32::MIN_POSITIVE).log2().floor();
         f64::from(exactly)
-            .max(to_one - MOST_EXPONENT)
+            .max(to_one - MAX_EXPONENT)
             .clamp(0.0, to_one)
     }
 
@@ -412,15 +412,15 @@ mod tests {
             let volume = of(voxels.clone());
             let values: Vec<f64> = voxels.iter().copied().map(f64::from).collect();
             assert_eq!(physical(&volume), values);
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-            assert_eq!(volume.range().min, least);
+            let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+            assert_eq!(volume.range().min, min);
             assert!(volume.stored_range().max < 121_f64.exp2());
         }
         // No power does both: the range is still that of the voxels as they are kept.
         let volume = of(vec![3e38, 1e-41]);
-        let kept = physical(&volume);
+        let stored = physical(&volume);
         assert!(volume.stored_range().max < 121_f64.exp2());
-        assert!(kept[1] != f64::from(1e-41_f32) && volume.range().min == kept[1]);
+        assert!(stored[1] != f64::from(1e-41_f32) && volume.range().min == stored[1]);
     }
 
     #[test]

@@ -233,7 +233,7 @@ fn the_other_experiments_end_in_tables() {
         let row = rows_of.iter().find(|row| row[1] == name).unwrap();
         row[3].parse::<f64>().unwrap()
     };
-    // Half a voxel aside is worse than centred, and the truth is no gradient's own.
+    // Half a voxel aside is worse than centred, and the reference favours no gradient.
     assert!(angle("central") > 0.0 && angle("central") < 0.5 * angle("forward"));
     let rays = of("rays --rays 3000");
     let all = rows(&rays).pop().unwrap();

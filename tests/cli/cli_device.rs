@@ -183,10 +183,10 @@ fn the_statistics_hold_what_is_promised() {
         }
         let layers = channels(&place, "a.exr");
         let mut names: Vec<&str> = layers.iter().map(|(name, _)| name.as_str()).collect();
-        let mut told = stats["channels"].as_array().unwrap().clone();
-        told.sort_by_key(Value::to_string);
+        let mut reported = stats["channels"].as_array().unwrap().clone();
+        reported.sort_by_key(Value::to_string);
         names.sort_unstable();
-        assert_eq!(names, told, "{mode}");
+        assert_eq!(names, reported, "{mode}");
         // The planes and the sums agree.
         for (name, key) in [("steps.N", "samples"), ("nodes.N", "nodes")] {
             let sum: f64 = channel(&layers, name).iter().map(|&n| f64::from(n)).sum();
@@ -237,7 +237,7 @@ fn the_layers_are_those_of_the_reference() {
         let line = format!("render blob.nrrd --mode {mode} --size 32 --azimuth 20 --aov all");
         place.done(&format!("{line} -o device.exr {device}"));
         place.done(&format!("{line} -o reference.exr --device reference"));
-        let (ours, truth) = (
+        let (ours, reference) = (
             channels(&place, "device.exr"),
             channels(&place, "reference.exr"),
         );
@@ -249,7 +249,8 @@ fn the_layers_are_those_of_the_reference() {
             }
         }
         assert!(channel(&ours, "cast.V").iter().all(|&v| v == 1.0), "{mode}");
-        let apart = |name, limit| share_apart(&channel(&ours, name), &channel(&truth, name), limit);
+        let apart =
+            |name, limit| share_apart(&channel(&ours, name), &channel(&reference, name), limit);
         assert!(
             apart("kind.V", 0.5) < 0.01,
             "{mode}: {}",
@@ -277,7 +278,7 @@ fn the_layers_are_those_of_the_reference() {
             assert!(apart("depth.Z", 0.05) < 0.01, "{}", apart("depth.Z", 0.05));
             // The control: a twentieth of a voxel is seen.
             let moved: Vec<f32> = channel(&ours, "depth.Z").iter().map(|z| z + 0.1).collect();
-            assert!(share_apart(&moved, &channel(&truth, "depth.Z"), 0.05) > 0.05);
+            assert!(share_apart(&moved, &channel(&reference, "depth.Z"), 0.05) > 0.05);
         }
     }
 }
@@ -312,12 +313,12 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
     assert!(samples < 100_000, "{samples}");
     let reference = view.replace(&device, "--device reference");
     place.done(&format!("render {reference} -o b.exr"));
-    let (ours, truth) = (channels(&place, "a.exr"), channels(&place, "b.exr"));
+    let (ours, reference) = (channels(&place, "a.exr"), channels(&place, "b.exr"));
     for name in ["R", "G", "B", "A"] {
-        let apart = share_apart(&channel(&ours, name), &channel(&truth, name), 1e-3);
+        let apart = share_apart(&channel(&ours, name), &channel(&reference, name), 1e-3);
         assert_eq!(apart, 0.0, "{name}");
     }
-    assert!(channel(&truth, "A").iter().any(|&a| a > 0.05));
+    assert!(channel(&reference, "A").iter().any(|&a| a > 0.05));
     // Steps that are asked for: as many as were reported, here coarse ones.
     let said = said_by(&format!("render {view} -o a.exr --step 10"));
     assert!(
@@ -413,13 +414,15 @@ fn an_inverted_window_is_the_negative_on_device_and_reference() {
         render("true.png", &format!("{inverted} --device reference"));
         render("hit.exr", &format!("{inverted} {device} --aov kind,value"));
         let hit = channel(&channels(&place, "hit.exr"), "kind.V");
-        let [up, down, truth] = ["up.png", "down.png", "true.png"].map(|name| pixels(&place, name));
+        let [up, down, reference] =
+            ["up.png", "down.png", "true.png"].map(|name| pixels(&place, name));
         let mut greys = 0;
         for (at, hit) in hit.iter().enumerate() {
-            let [up, down, truth] = [&up, &down, &truth].map(|plane| i32::from(plane[3 * at]));
+            let [up, down, reference] =
+                [&up, &down, &reference].map(|plane| i32::from(plane[3 * at]));
             assert!(
-                (down - truth).abs() <= 1,
-                "{mode} {sampling} {at}: {down} {truth}"
+                (down - reference).abs() <= 1,
+                "{mode} {sampling} {at}: {down} {reference}"
             );
             if *hit > 0.0 {
                 assert!(

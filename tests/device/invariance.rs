@@ -170,7 +170,7 @@ fn skipping_and_traversal_never_change_a_bit() {
                     assert_eq!(total(frame.plane(NODES)), 0);
                 }
             }
-            let mut nodes_told = Vec::new();
+            let mut node_counts = Vec::new();
             for traverse in Traverse::ALL {
                 let skipped = all_frames(&mut renderer, &volume, true, traverse);
                 for ((what, whole), (_, skipped)) in whole.iter().zip(&skipped) {
@@ -186,12 +186,12 @@ fn skipping_and_traversal_never_change_a_bit() {
                         );
                     }
                 }
-                nodes_told.push(total(skipped[0].1.plane(NODES)));
+                node_counts.push(total(skipped[0].1.plane(NODES)));
             }
             // The counters tell the traversals apart, where there are nodes to skip.
-            nodes_told.sort_unstable();
-            nodes_told.dedup();
-            let all = nodes_told.len() == Traverse::ALL.len();
+            node_counts.sort_unstable();
+            node_counts.dedup();
+            let all = node_counts.len() == Traverse::ALL.len();
             assert!(all || name != "tubes", "{name} leaf {leaf}");
         }
     }

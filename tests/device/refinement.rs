@@ -99,10 +99,9 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
 }
 
 fn worst(errors: &[f64]) -> f64 {
-    errors.iter().fold(
-        0.0,
-        |most, &e| if e > most || e.is_nan() { e } else { most },
-    )
+    errors
+        .iter()
+        .fold(0.0, |max, &e| if e > max || e.is_nan() { e } else { max })
 }
 
 fn mean(errors: &[f64]) -> f64 {

@@ -150,9 +150,9 @@ fn beyond_eight_bits(volume: &Volume, samples: &Samples) -> usize {
     pairs
         .filter(|&(&p, &value)| {
             let (corners, _) = corners(volume, p);
-            let most = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let least = corners.into_iter().fold(f64::INFINITY, f64::min);
-            let bound = 3.0 / 256.0 * (most - least) + 1e-4 * range;
+            let max = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let min = corners.into_iter().fold(f64::INFINITY, f64::min);
+            let bound = 3.0 / 256.0 * (max - min) + 1e-4 * range;
             (value - trilinear(volume, p, None)).abs() > bound
         })
         .count()

@@ -91,11 +91,11 @@ fn rays_a_hair_beside_a_corner_are_told_apart() {
     let (report, found) = answered(&target, &[ray]).unwrap();
     let total = report.total();
     assert_eq!((total.hits, total.borderline), (1, 0), "{CAUGHT}: {report}");
-    let met = found[0];
-    let right = total.wrong() == 0 && met.kind == Kind::Surface && met.t == 47.0;
+    let hit = found[0];
+    let right = total.wrong() == 0 && hit.kind == Kind::Surface && hit.t == 47.0;
     assert!(
-        right && met.certificate != Certificate::Miss,
-        "{CAUGHT}: {met:?}"
+        right && hit.certificate != Certificate::Miss,
+        "{CAUGHT}: {hit:?}"
     );
 }
 
@@ -140,7 +140,7 @@ fn a_ray_meets_a_solid_volume_exactly_when_it_does() {
         return;
     };
     let total = report.total();
-    let caps = found.iter().filter(|met| met.kind == Kind::Cap).count();
+    let caps = found.iter().filter(|hit| hit.kind == Kind::Cap).count();
     assert!((1000..3500).contains(&caps), "{caps}");
     // Not even borderline: the reference's own answer to every ray.
     let exact = total.wrong() == 0 && total.borderline == 0 && total.hits == caps as u64;
@@ -169,7 +169,7 @@ fn a_ray_begins_in_the_cell_in_which_it_enters() {
     let Some((report, found)) = answered(&target, &rays) else {
         return;
     };
-    let kinds: Vec<Kind> = found.iter().map(|met| met.kind).collect();
+    let kinds: Vec<Kind> = found.iter().map(|hit| hit.kind).collect();
     let right = [
         Kind::Surface,
         Kind::Nothing,

@@ -57,7 +57,7 @@ fn sizes() {
 
 #[test]
 fn constant() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let caps = (0..seen.pixels())
             .filter(|&pixel| seen.kind(pixel) == 2)
             .count();
@@ -68,7 +68,7 @@ fn constant() {
         }
     }
     let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
-    check("volumes::constant", "constant", truth, &[never_above]);
+    check("volumes::constant", "constant", expected, &[never_above]);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn files_of_all_types_are_read_as_they_should_be() {
 
 #[test]
 fn non_finite() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let lowest = seen.volume.range().min;
         let mut lines = is("17 voxels are counted", seen.volume.non_finite() == 17);
         lines.extend(is("they are the smallest finite value", lowest < -40.0));
@@ -138,7 +138,7 @@ fn non_finite() {
         });
         with_voxels(volume, voxels.collect())
     });
-    check("volumes::non_finite", "non-finite", truth, &[as_zero]);
+    check("volumes::non_finite", "non-finite", expected, &[as_zero]);
 }
 
 /// A surface, a maximum and an emission from the surface's camera.
@@ -282,7 +282,7 @@ typedef ulong16 Index;
 
 #[test]
 fn clip_planes() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let hits = seen.hits();
         if seen.name.starts_with("nothing-left") {
             return is("nothing is left", hits == 0);
@@ -326,7 +326,7 @@ fn clip_planes() {
     check(
         "volumes::clip_planes",
         "clip-planes",
-        truth,
+        expected,
         &[along, first],
     );
 }

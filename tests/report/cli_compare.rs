@@ -103,12 +103,12 @@ fn the_figures_are_those_of_the_pictures() {
     let line = SMALL.replace(" --iso 100", "");
     place.done(&format!("{line} --modes mip {device}"));
     let results = place.json("out/results.json");
-    let truth = pixels(&place.path("out/pictures/mip-00-reference.png"));
+    let reference = pixels(&place.path("out/pictures/mip-00-reference.png"));
     let mut wrong = 0;
     for row in rows(&results) {
         let file = row["files"]["png"].as_str().unwrap();
         let picture = pixels(&place.path(&format!("out/{file}")));
-        let differences = truth.iter().zip(&picture);
+        let differences = reference.iter().zip(&picture);
         let differences = differences.flat_map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()));
         let max = differences.fold(0.0, f64::max);
         // Both pictures are rounded to 255 levels.

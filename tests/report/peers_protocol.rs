@@ -66,12 +66,15 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     assert_eq!(*display, [[1.0; 4], [grey, grey, grey, 1.0]]);
 
     // It is evaluated as any picture is.
-    let mut truth = picture.frame.clone();
-    assert_eq!(color_error(&truth, &picture.frame).unwrap().max, 0.0);
-    truth.display.as_mut().unwrap()[1] = [grey - 0.25; 4];
-    truth.layers.insert(DEPTH, vec![f32::INFINITY; 2]);
-    assert!((color_error(&truth, &picture.frame).unwrap().max - 0.25).abs() < 1e-6);
-    assert_eq!(depth_error(&truth, &picture.frame, 1.0).unwrap().extra, 1);
+    let mut reference = picture.frame.clone();
+    assert_eq!(color_error(&reference, &picture.frame).unwrap().max, 0.0);
+    reference.display.as_mut().unwrap()[1] = [grey - 0.25; 4];
+    reference.layers.insert(DEPTH, vec![f32::INFINITY; 2]);
+    assert!((color_error(&reference, &picture.frame).unwrap().max - 0.25).abs() < 1e-6);
+    assert_eq!(
+        depth_error(&reference, &picture.frame, 1.0).unwrap().extra,
+        1
+    );
 }
 
 #[test]

@@ -593,8 +593,9 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
     let averaged = "mode = 'dvr'\nhomogeneity = 0.1";
     let adaptive = "adaptive:0.001".parse().ok();
     assert_eq!(quad(&["--quad", "adaptive"], averaged), (adaptive, false));
-    let (kept, is_averaged) = quad(&["--homogeneity", "0.1"], "mode = 'dvr'\nquad = 'adaptive'");
-    assert!(kept.is_none() && is_averaged);
+    let (quadrature, is_averaged) =
+        quad(&["--homogeneity", "0.1"], "mode = 'dvr'\nquad = 'adaptive'");
+    assert!(quadrature.is_none() && is_averaged);
 }
 
 #[test]

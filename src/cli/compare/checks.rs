@@ -9,8 +9,8 @@ use crate::options::{ErrorBound, SceneOptions, TransferChoice};
 use crate::scene::Mode;
 use crate::volume::files_of;
 
-use super::super::load::Source;
 use super::super::outputs;
+use super::super::source::Source;
 
 /// Checks that every flag goes with one of the modes.
 pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {

@@ -17,10 +17,10 @@ use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
 use crate::scene::Mode;
 
-use super::engine::{DeviceOptions, Engine};
-use super::load::{Loaded, Source, ms_since};
+use super::backend::{Backend, DeviceOptions};
 use super::progress::Bars;
 use super::scene::SceneArgument;
+use super::source::{Loaded, Source, ms_since};
 use super::terminal::{lines_to_stdout, message, note};
 use options::{CompareOptions, Named};
 use page::{about, report};
@@ -93,10 +93,10 @@ impl CompareArguments {
         let mut options = source.stored(request.options.clone());
         // Results and pictures are passed on together: they name the volume, not its place.
         options.volume.volume = Some(FilePath(source.name().to_owned()));
-        let Engine::Device {
+        let Backend::Device {
             device,
             options: use_of_device,
-        } = Engine::open(&request.device)?
+        } = Backend::open(&request.device)?
         else {
             return Err(Error::usage(
                 "the reference cannot be compared: it is what others are compared with",

@@ -46,7 +46,7 @@ impl Quantity {
     /// The least that a map is coloured to: a level of 8 bits for colours, for values in a window over
     /// their whole range, and for the shading by a normal; a hundredth of a voxel. What rounding
     /// leaves is far below, and would else fill the maps of good pictures.
-    pub fn least_scale(self) -> f64 {
+    pub fn min_scale(self) -> f64 {
         const LEVEL: f64 = 1.0 / 255.0;
         match self {
             Self::Color | Self::Value => LEVEL,
@@ -76,7 +76,7 @@ pub struct ErrorMap {
 impl ErrorMap {
     /// Its scale is the 99th percentile of the absolute differences that are not 0: a few
     /// outliers do not make all else look alike, and a few differences are not lost among many
-    /// equal pixels. It is at least [`Quantity::least_scale`].
+    /// equal pixels. It is at least [`Quantity::min_scale`].
     ///
     /// # Errors
     /// Those of [`super::color_error`], [`super::depth_error`], [`super::normal_error`] or
@@ -99,7 +99,7 @@ impl ErrorMap {
             entries,
             scale: percentile(&mut sizes, 99)
                 .unwrap_or(0.0)
-                .max(quantity.least_scale()),
+                .max(quantity.min_scale()),
         })
     }
 

@@ -216,7 +216,7 @@ pub fn colors(device: &Device, volume: &Volume, scenes: &[Scene]) -> Result<Vec<
 
 /// The largest difference of any channel.
 pub fn apart(a: [f64; 4], b: [f64; 4]) -> f64 {
-    (0..4).fold(0.0, |most, c| f64::max(most, (a[c] - b[c]).abs()))
+    (0..4).fold(0.0, |max, c| f64::max(max, (a[c] - b[c]).abs()))
 }
 
 fn transfer() -> Result<TransferFunction> {

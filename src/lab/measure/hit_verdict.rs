@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::error::Result;
 use crate::frame::Kind;
-use crate::reference::{Sight, Tracer};
+use crate::reference::{RayResult, Tracer};
 use crate::scene::{Picture, Ray, Scene};
 use crate::volume::Volume;
 
@@ -18,11 +18,11 @@ pub struct Answer {
     pub depth_mm: f64,
 }
 
-impl From<&Sight> for Answer {
-    fn from(sight: &Sight) -> Self {
+impl From<&RayResult> for Answer {
+    fn from(result: &RayResult) -> Self {
         Self {
-            kind: sight.kind,
-            depth_mm: sight.depth_mm,
+            kind: result.kind,
+            depth_mm: result.depth_mm,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::{DEPTH, Frame, Layer, VALUE, Wanted, percentile};
 use crate::options::{ErrorBound, ErrorMetric};
-use crate::reference::{Sight, display};
+use crate::reference::{RayResult, display};
 use crate::scene::Tone;
 use crate::volume::Volume;
 
@@ -22,13 +22,13 @@ pub struct Seen {
 }
 
 impl Seen {
-    pub fn by_reference(sight: &Sight, tone: &Tone) -> Self {
-        let [r, g, b, _] = display(sight.color, tone).map(|c| c as f32);
+    pub fn by_reference(result: &RayResult, tone: &Tone) -> Self {
+        let [r, g, b, _] = display(result.color, tone).map(|c| c as f32);
         Self {
             rgb: [r, g, b],
-            depth: sight.depth_mm as f32,
-            value: sight.value as f32,
-            covered: sight.color[3] as f32 > 0.0,
+            depth: result.depth_mm as f32,
+            value: result.value as f32,
+            covered: result.color[3] as f32 > 0.0,
         }
     }
 

@@ -33,7 +33,7 @@ struct TriedStats {
     setting: String,
     ms: Option<f64>,
     error: f64,
-    judged: bool,
+    evaluated: bool,
 }
 
 #[derive(Serialize)]
@@ -51,7 +51,7 @@ impl ToleranceStats {
             setting: tried.setting.flags(),
             ms: tried.ms,
             error: tried.error,
-            judged: tried.evaluated,
+            evaluated: tried.evaluated,
         });
         Self {
             metric: bound.metric().name(),

@@ -176,16 +176,16 @@ mod tests {
         seen
     }
 
-    fn every_range(mut judge: impl FnMut(f64, f64)) {
+    fn every_range(mut test: impl FnMut(f64, f64)) {
         for lo in -4..=90 {
             for hi in lo..=90 {
-                judge(f64::from(lo) * 0.5, f64::from(hi) * 0.5);
+                test(f64::from(lo) * 0.5, f64::from(hi) * 0.5);
             }
         }
         for lo in 0..=60 {
             for hi in lo..=60 {
                 let [lo, hi] = [lo, hi].map(|i| f64::from((29.98 + f64::from(i) * 0.001) as f32));
-                judge(lo, hi);
+                test(lo, hi);
             }
         }
     }

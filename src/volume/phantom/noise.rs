@@ -31,11 +31,11 @@ pub(super) fn white(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         Ok(voxels)
     }
     let voxels = with_type!(spec.voxel_type, T => of_type::<T>(spec))?;
-    let truth = format!(
+    let definition = format!(
         "the field is an independent, uniformly distributed number from 0 to 1 at every voxel (PCG64, seed {})",
         spec.seed
     );
-    Ok((voxels, truth))
+    Ok((voxels, definition))
 }
 
 /// Adds Gaussian noise of `spec.noise` times the value range (nothing, where that is 0); slice k

@@ -119,7 +119,7 @@ impl Array {
         let read = |reader: &mut dyn Read| {
             element::read_voxels(reader, self.element, len, certain, request.progress)
         };
-        let kept = if self.frames.count == 1 {
+        let converted = if self.frames.count == 1 {
             read(&mut reader)?
         } else {
             read(&mut self.frames.pick(&mut reader, size))?
@@ -135,9 +135,9 @@ impl Array {
                 }
             }
         }
-        self.note_loss(kept.loss);
-        self.rescale = self.rescale.after(kept.rescale);
-        Ok(kept.voxels)
+        self.note_loss(converted.loss);
+        self.rescale = self.rescale.after(converted.rescale);
+        Ok(converted.voxels)
     }
 
     fn note_rest(&mut self, what: &str) {

@@ -64,7 +64,7 @@ impl Scalar {
     }
 
     /// Whether the file's numbers are kept as they are.
-    pub(super) fn is_kept(self) -> bool {
+    pub(super) fn is_exact(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::I16 | Self::F32)
     }
 }
@@ -100,7 +100,7 @@ impl Element {
 
     /// Whether the bytes can be used where they lie.
     pub(super) fn is_usable_in_place(self) -> bool {
-        self.scalar.is_kept() && (self.endian == Endian::NATIVE || self.scalar.bytes() == 1)
+        self.scalar.is_exact() && (self.endian == Endian::NATIVE || self.scalar.bytes() == 1)
     }
 }
 
@@ -130,13 +130,13 @@ pub(super) struct Loss {
 }
 
 /// Voxels as they are kept: the file's number is `rescale.physical(stored)`.
-pub(super) struct Kept {
+pub(super) struct Converted {
     pub(super) voxels: Voxels,
     pub(super) rescale: Rescale,
     pub(super) loss: Loss,
 }
 
-impl<T> From<Vec<T>> for Kept
+impl<T> From<Vec<T>> for Converted
 where
     Voxels: From<Vec<T>>,
 {
@@ -203,14 +203,14 @@ pub(super) fn read_voxels(
     count: usize,
     certain: bool,
     progress: &dyn Progress,
-) -> Result<Kept> {
+) -> Result<Converted> {
     let growth = Growth { count, certain };
     let endian = element.endian;
     Ok(match element.scalar {
-        Scalar::U8 => read_kept::<u8>(reader, endian, &growth, progress)?.into(),
-        Scalar::U16 => read_kept::<u16>(reader, endian, &growth, progress)?.into(),
-        Scalar::I16 => read_kept::<i16>(reader, endian, &growth, progress)?.into(),
-        Scalar::F32 => read_kept::<f32>(reader, endian, &growth, progress)?.into(),
+        Scalar::U8 => read_unconverted::<u8>(reader, endian, &growth, progress)?.into(),
+        Scalar::U16 => read_unconverted::<u16>(reader, endian, &growth, progress)?.into(),
+        Scalar::I16 => read_unconverted::<i16>(reader, endian, &growth, progress)?.into(),
+        Scalar::F32 => read_unconverted::<f32>(reader, endian, &growth, progress)?.into(),
         Scalar::I8 | Scalar::F16 => read_converted(reader, element, &growth, progress)?.into(),
         Scalar::U32 | Scalar::I32 | Scalar::U64 | Scalar::I64 | Scalar::F64 => {
             // As they lie in the file, in the memory in which they are then narrowed.
@@ -219,7 +219,7 @@ pub(super) fn read_voxels(
                 Error::resource(format!("{count} voxels do not fit this machine's memory"))
             })?;
             let growth = Growth { count, certain };
-            let raw = read_kept::<f32>(reader, Endian::NATIVE, &growth, progress)?;
+            let raw = read_unconverted::<f32>(reader, Endian::NATIVE, &growth, progress)?;
             narrow(raw, element)
         }
     })
@@ -240,7 +240,7 @@ fn damaged(cause: &io::Error, read: u64, expected: u64) -> Error {
     ))
 }
 
-fn read_kept<T: Voxel>(
+fn read_unconverted<T: Voxel>(
     reader: &mut dyn Read,
     endian: Endian,
     growth: &Growth,
@@ -322,8 +322,8 @@ mod tests {
             scalar,
             endian: Endian::Little,
         };
-        let kept = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
-        Ok((0..count).map(|i| kept.voxels.stored(i)).collect())
+        let converted = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
+        Ok((0..count).map(|i| converted.voxels.stored(i)).collect())
     }
 
     #[test]

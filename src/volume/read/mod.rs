@@ -99,7 +99,7 @@ fn shortened(error: Error) -> Error {
 }
 
 fn read_source(source: Source, request: &Request) -> Result<Volume> {
-    if raw::is_asked_for(request) {
+    if raw::is_requested(request) {
         return raw::read(source, request);
     }
     let head = source.head();

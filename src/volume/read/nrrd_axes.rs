@@ -21,7 +21,7 @@ pub(super) struct Axes {
 }
 
 /// The most axes: NRRD's own limit.
-const MOST_AXES: usize = 16;
+const MAX_AXES: usize = 16;
 
 /// Kinds of axes whose entries are one voxel's components rather than voxels.
 fn is_colour(kind: &str) -> bool {
@@ -94,7 +94,7 @@ fn check_components(
 impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
-        if !(1..=MOST_AXES).contains(&dimension) {
+        if !(1..=MAX_AXES).contains(&dimension) {
             return Err(Error::input(format!("an NRRD array of {dimension} axes")));
         }
         let sizes: Vec<u64> = exactly("sizes", fields.need("sizes")?, dimension)?;
@@ -128,13 +128,16 @@ impl Axes {
         }
         check_components(&sizes, kinds.as_deref(), directions.is_some(), frame_axis)?;
 
-        let kept: Vec<usize> = (0..dimension)
+        let remaining: Vec<usize> = (0..dimension)
             .filter(|axis| space_axes.contains(axis) || frame_axis == Some(*axis))
             .collect();
         Ok(Self {
-            sizes: kept.iter().map(|&axis| sizes[axis]).collect(),
-            frame_axis: frame_axis
-                .and_then(|axis| kept.iter().position(|&kept_axis| kept_axis == axis)),
+            sizes: remaining.iter().map(|&axis| sizes[axis]).collect(),
+            frame_axis: frame_axis.and_then(|axis| {
+                remaining
+                    .iter()
+                    .position(|&remaining_axis| remaining_axis == axis)
+            }),
             space_axes,
             directions,
         })
@@ -233,7 +236,7 @@ fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
             found.push(None);
             rest = rest_after_none.trim_start();
         }
-        if found.len() > MOST_AXES {
+        if found.len() > MAX_AXES {
             return Err(wrong());
         }
     }

@@ -25,7 +25,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 const LONGEST_HEADER: usize = 10_000;
 
 /// The most axes: NumPy's own limit.
-const MOST_AXES: usize = 64;
+const MAX_AXES: usize = 64;
 
 pub(super) fn is_npy(head: &[u8]) -> bool {
     head.starts_with(MAGIC)
@@ -124,14 +124,14 @@ impl Header {
                     .split(',')
                     .map(str::trim)
                     .filter(|size| !size.is_empty())
-                    .take(MOST_AXES + 1)
+                    .take(MAX_AXES + 1)
                     .map(|size| size.trim_end_matches('L').parse().ok())
                     .collect()
             })
             .ok_or_else(|| Error::input("the .npy header's shape cannot be read"))?;
-        if shape.len() > MOST_AXES {
+        if shape.len() > MAX_AXES {
             return Err(Error::input(format!(
-                "the .npy header announces more than {MOST_AXES} axes"
+                "the .npy header announces more than {MAX_AXES} axes"
             )));
         }
         Ok(Self {

@@ -174,7 +174,7 @@ fn long_type_name(word: &str) -> Option<RawType> {
 }
 
 /// Whether the flags make this file a headerless one.
-pub(super) fn is_asked_for(request: &Request) -> bool {
+pub(super) fn is_requested(request: &Request) -> bool {
     request.options.raw.is_given()
 }
 
@@ -217,7 +217,7 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
 }
 
 /// The most bytes counted for a hint.
-const MOST_COUNTED: u64 = 1 << 28;
+const MAX_COUNTED: u64 = 1 << 28;
 
 /// What to say of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {
@@ -225,7 +225,7 @@ pub(super) fn unrecognised(source: Source) -> Error {
         "this is none of the formats NRRD, MetaImage, NIfTI, NumPy, and its name does not describe headerless voxels",
     );
     let flags = "for headerless voxels give --raw-size NXxNYxNZ and --raw-type (u8, i16, f32, …)";
-    let guess = match source.decoded_len(MOST_COUNTED) {
+    let guess = match source.decoded_len(MAX_COUNTED) {
         Ok(Some(length)) => cube_guess(length),
         _ => None,
     };

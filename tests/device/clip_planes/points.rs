@@ -26,7 +26,7 @@ fn random_set(random: &mut Random, center: DVec3, radius_mm: f64) -> Vec<ClipPla
 }
 
 /// The kept points of a ray, mm from its origin: the first and the last.
-fn kept_points(
+fn visible_points(
     volume: &Volume,
     planes: &[ClipPlane],
     ray: angioray::scene::Ray,
@@ -63,7 +63,7 @@ fn compare(
     for (pixel, (depth_mm, length_mm)) in depths.iter().zip(lengths_mm(through)).enumerate() {
         let (i, j) = (pixel as u32 % size.width(), pixel as u32 / size.width());
         let ray = camera.ray(size, f64::from(i) + 0.5, f64::from(j) + 0.5);
-        let right = match kept_points(volume, planes, ray, farthest_mm) {
+        let right = match visible_points(volume, planes, ray, farthest_mm) {
             // A shorter interval may lie between two points.
             None => length_mm < 1.1 * APART_MM,
             Some((first_mm, last_mm)) => {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::memory::most_held;
+use super::memory::max_held;
 use super::subjects::Subjects;
 
 /// All that there are.
@@ -22,7 +22,7 @@ const CASES_VARIABLE: &str = "ANGIORAY_FUZZ_CASES";
 const ONE_VARIABLE: &str = "ANGIORAY_FUZZ_ONE";
 
 /// Beyond the file's own bytes, of which none has many.
-const MOST_MEMORY: usize = 16 << 20;
+const MAX_MEMORY: usize = 16 << 20;
 
 /// A case that takes this long never ends: its number is said before the program is given up.
 const HANG: Duration = Duration::from_secs(120);
@@ -40,7 +40,7 @@ pub struct Outcome {
 struct Figures {
     read: u64,
     refused: u64,
-    most_held: usize,
+    max_held: usize,
     longest: Duration,
 }
 
@@ -48,7 +48,7 @@ impl Figures {
     fn add(&mut self, more: &Self) {
         self.read += more.read;
         self.refused += more.refused;
-        self.most_held = self.most_held.max(more.most_held);
+        self.max_held = self.max_held.max(more.max_held);
         self.longest = self.longest.max(more.longest);
     }
 }
@@ -73,11 +73,11 @@ fn take(
     for case in cases {
         watch.begin(case);
         let began = Instant::now();
-        let (outcome, held) = most_held(|| catch_unwind(AssertUnwindSafe(|| judge(case))));
+        let (outcome, held) = max_held(|| catch_unwind(AssertUnwindSafe(|| judge(case))));
         let took = began.elapsed();
         let held = usize::try_from(held).unwrap_or(0);
         let outcome = outcome.map_err(|_| format!("case {case} panics"))?;
-        if held > outcome.bytes + MOST_MEMORY {
+        if held > outcome.bytes + MAX_MEMORY {
             return Err(format!(
                 "case {case} ({}) of {} bytes held {held} bytes",
                 outcome.kind, outcome.bytes
@@ -86,7 +86,7 @@ fn take(
         all.entry(outcome.kind).or_default().add(&Figures {
             read: u64::from(outcome.was_read),
             refused: u64::from(!outcome.was_read),
-            most_held: held,
+            max_held: held,
             longest: took,
         });
     }
@@ -172,7 +172,7 @@ fn changed_headers_are_read_or_refused_and_nothing_else() {
             "{kind:>10}: {:>7} read, {:>7} refused, {:>9} bytes held at most, {:>7.1} ms at most",
             of_kind.read,
             of_kind.refused,
-            of_kind.most_held,
+            of_kind.max_held,
             of_kind.longest.as_secs_f64() * 1e3
         );
         // Both happen, so neither branch is idle.

@@ -80,12 +80,12 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
         bytes.push(draws.byte());
         return;
     }
-    let reach = if draws.one_in(8) {
+    let range = if draws.one_in(8) {
         size
     } else {
         size.min(HEADER)
     };
-    let at = draws.below(reach);
+    let at = draws.below(range);
     let end = (at + 1 + draws.below(40)).min(size);
     match draws.below(11) {
         0 => bytes[at] = draws.byte(),
@@ -101,14 +101,14 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
         }
         4 | 5 => replace_part(
             bytes,
-            reach,
+            range,
             |b| b.is_ascii_digit(),
             draws,
             |draws| draws.any_of(&HOSTILE_NUMBERS).to_owned(),
         ),
         6 => replace_part(
             bytes,
-            reach,
+            range,
             |b| !b.is_ascii_whitespace(),
             draws,
             |draws| {
@@ -121,7 +121,7 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
         7 => drop(bytes.drain(at..end)),
         8 => {
             let part = bytes[at..end].to_vec();
-            let to = draws.below(reach);
+            let to = draws.below(range);
             bytes.splice(to..to, part);
         }
         9 => change_line(bytes, draws),
@@ -136,13 +136,13 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
 /// Puts another text in the place of a run of bytes that are all of a kind.
 fn replace_part(
     bytes: &mut Vec<u8>,
-    reach: usize,
+    range: usize,
     kind: impl Fn(u8) -> bool,
     draws: &mut Draws,
     text: impl Fn(&mut Draws) -> String,
 ) {
     let of_kind = |at: usize| kind(bytes[at]);
-    let starts: Vec<usize> = (0..reach)
+    let starts: Vec<usize> = (0..range)
         .filter(|&at| of_kind(at) && (at == 0 || !of_kind(at - 1)))
         .collect();
     let Some(&start) = starts.get(draws.below(starts.len())) else {

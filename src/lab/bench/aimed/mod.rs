@@ -44,7 +44,7 @@ pub struct Tally {
     /// Answers that are proven and yet not the reference's, where the reference is certain.
     pub wrongly_proven: u64,
     /// The greatest distance of answers that agree, in voxels.
-    pub most_apart: f64,
+    pub max_apart: f64,
 }
 
 impl Tally {
@@ -63,7 +63,7 @@ impl Tally {
             borderline: self.borderline + other.borderline,
             undecided: self.undecided + other.undecided,
             wrongly_proven: self.wrongly_proven + other.wrongly_proven,
-            most_apart: self.most_apart.max(other.most_apart),
+            max_apart: self.max_apart.max(other.max_apart),
         }
     }
 }
@@ -126,7 +126,7 @@ impl fmt::Display for Report {
                 t.borderline,
                 t.undecided,
                 t.wrongly_proven,
-                t.most_apart
+                t.max_apart
             )?;
         }
         self.wrong.iter().try_for_each(|line| writeln!(f, "{line}"))
@@ -252,7 +252,7 @@ fn check_one(
         ..Tally::default()
     };
     match verdict {
-        HitVerdict::Agrees { apart } => tally.most_apart = apart,
+        HitVerdict::Agrees { apart } => tally.max_apart = apart,
         HitVerdict::Borderline => tally.borderline = 1,
         HitVerdict::Missed => tally.missed = 1,
         HitVerdict::Extra => tally.extra = 1,

@@ -210,7 +210,7 @@ impl<'a> Request<'a> {
         renderer: &mut Renderer,
         bench: &Bench,
     ) -> Result<Vec<Scene>> {
-        let mut keeping = Vec::new();
+        let mut retaining = Vec::new();
         for setting in candidates(self.mode, ANY_LIMIT)?.concat() {
             bench.check_stop()?;
             let options = setting.over(&self.options).checked()?;
@@ -218,13 +218,13 @@ impl<'a> Request<'a> {
             let figure = self.figure_of(&scene, reference, renderer)?;
             if self.bound.is_met_by(figure) {
                 let ms = renderer.render(&scene, Wanted::DISPLAY)?.render_ms;
-                keeping.push((scene, ms));
+                retaining.push((scene, ms));
             }
         }
-        let times = keeping.iter().map(|(_, ms)| *ms);
+        let times = retaining.iter().map(|(_, ms)| *ms);
         let fastest = times.fold(f64::INFINITY, f64::min);
-        keeping.retain(|(_, ms)| *ms <= MAX_SLOWDOWN * fastest);
-        Ok(keeping.into_iter().map(|(scene, _)| scene).collect())
+        retaining.retain(|(_, ms)| *ms <= MAX_SLOWDOWN * fastest);
+        Ok(retaining.into_iter().map(|(scene, _)| scene).collect())
     }
 }
 

@@ -235,12 +235,12 @@ struct Complaints {
 impl Complaints {
     fn of(stderr: ChildStderr) -> Self {
         let last = Arc::new(Mutex::new(None));
-        let kept = Arc::clone(&last);
+        let shared = Arc::clone(&last);
         let reader = thread::spawn(move || {
             let mut lines = BufReader::new(stderr);
             while let Some(line) = next_line(&mut lines) {
                 if !line.is_empty() {
-                    *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(line);
+                    *shared.lock().unwrap_or_else(PoisonError::into_inner) = Some(line);
                 }
             }
         });

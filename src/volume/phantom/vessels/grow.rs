@@ -260,8 +260,8 @@ fn branching_point(start_mm: DVec3, toward: [DVec3; 2], [r0, r1, r2]: [f64; 3]) 
         p = sum / weight;
     }
     let middle = (toward[0] * r1 * r1 + toward[1] * r2 * r2) / (r1 * r1 + r2 * r2);
-    let least = MIN_SHARE * middle.distance(start_mm);
-    if p.distance(start_mm) < least {
+    let min_mm = MIN_SHARE * middle.distance(start_mm);
+    if p.distance(start_mm) < min_mm {
         start_mm + (middle - start_mm) * MIN_SHARE
     } else {
         p

@@ -70,7 +70,7 @@ mod tests {
     /// Murray's angles are where the volume is least: moving the branching any way adds to it.
     #[test]
     fn branching_angles_make_the_volume_least() {
-        let least = |cosines: [f64; 2], radii: [f64; 3]| {
+        let is_minimal = |cosines: [f64; 2], radii: [f64; 3]| {
             let sine = |c: f64| (1.0 - c * c).sqrt();
             let ends = [
                 ([-1.0, 0.0], radii[0]),
@@ -86,9 +86,9 @@ mod tests {
         for r1 in [0.3_f64, 0.6, 0.8, 0.95] {
             let r2 = (1.0 - r1.powi(3)).cbrt();
             let cosines = branching_cosines(1.0, r1, r2);
-            assert!(least(cosines, [1.0, r1, r2]), "r1 = {r1}");
+            assert!(is_minimal(cosines, [1.0, r1, r2]), "r1 = {r1}");
             let wider = cosines.map(|c| (c.acos() + 0.05).cos());
-            assert!(!least(wider, [1.0, r1, r2]), "r1 = {r1}, wrong angles");
+            assert!(!is_minimal(wider, [1.0, r1, r2]), "r1 = {r1}, wrong angles");
         }
     }
 }

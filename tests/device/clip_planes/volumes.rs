@@ -68,10 +68,10 @@ fn planes_keep_their_share_of_a_uniform_medium() {
         let kept: Vec<f64> = (frames.iter())
             .map(|frame| lengths_mm(frame).sum::<f64>() * pixel_mm2)
             .collect();
-        for ((planes, truth), kept) in sets.iter().zip(&kept) {
+        for ((planes, reference), kept) in sets.iter().zip(&kept) {
             assert!(
-                (kept - truth).abs() <= 0.002 * 512.0,
-                "{}: {planes:?} keep {kept} mm³ of {truth}",
+                (kept - reference).abs() <= 0.002 * 512.0,
+                "{}: {planes:?} keep {kept} mm³ of {reference}",
                 engine.name
             );
         }

@@ -18,8 +18,8 @@ use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
-use super::load::{Source, ms_since};
 use super::progress::Bars;
+use super::source::{Source, ms_since};
 use super::stats::{DeviceStats, PassStats, Times};
 use super::terminal::note;
 
@@ -48,8 +48,9 @@ impl DeviceOptions {
     /// Lays these flags over a scene file's options: what a device needs goes where the flag is the
     /// reference.
     pub fn over_file(self, file: Self) -> Self {
-        let kept = file.keeping(|option| has_needs(Group::Device, option, |need| self.meets(need)));
-        self.over(kept)
+        let remaining =
+            file.retaining(|option| has_needs(Group::Device, option, |need| self.meets(need)));
+        self.over(remaining)
     }
 
     /// Whether the device named is one that has this.
@@ -109,7 +110,7 @@ impl FromStr for WorkGroup {
 
 readable!(DeviceName, WorkGroup, Lanes);
 
-pub enum Engine {
+pub enum Backend {
     Reference,
     Device {
         device: Box<Device>,
@@ -131,7 +132,7 @@ pub struct Rendered {
     pub uploaded_bytes: u64,
 }
 
-impl Engine {
+impl Backend {
     /// What the options name: the reference, or a device.
     ///
     /// # Errors
@@ -217,7 +218,7 @@ impl Engine {
     }
 }
 
-/// What an [`Engine`] made of a volume.
+/// What an [`Backend`] made of a volume.
 pub enum Prepared {
     Nothing,
     Octree { octree: Octree, octree_ms: f64 },

@@ -13,7 +13,7 @@ pub fn catch() {
     signals::catch();
 }
 
-/// What the sentence names from now on, such as `the device 'x' was at work`.
+/// Sets what the crash message names from now on, such as `the device 'x' was at work`.
 pub fn while_at_work(clause: &str) {
     #[cfg(unix)]
     signals::set_clause(clause);

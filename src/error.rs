@@ -115,14 +115,14 @@ impl Error {
         Self::resource(format!("{}: cannot {doing}: {cause}", path.display()))
     }
 
-    /// The same error with a hint, shown on a line of its own.
+    /// Adds a hint, shown on a line of its own.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
     }
 
-    /// The same error, its place named first: `place: message`.
+    /// Puts the place before the message: `place: message`.
     #[must_use]
     pub fn at(mut self, place: impl fmt::Display) -> Self {
         self.message = format!("{place}: {}", self.message);

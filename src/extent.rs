@@ -42,7 +42,7 @@ impl Dims {
         self.0
     }
 
-    /// As array sizes.
+    /// The sizes as indices of arrays.
     pub fn usize(self) -> [usize; 3] {
         self.0.map(|n| n as usize)
     }

@@ -23,7 +23,7 @@ pub fn text(path: &Path, doing: &str) -> Result<String> {
     })
 }
 
-/// As [`text`], whatever its bytes are.
+/// Reads a file's bytes, whatever they are; see [`text`].
 ///
 /// # Errors
 /// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nobody writes into.

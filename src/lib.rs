@@ -31,5 +31,5 @@ pub mod volume;
 
 pub use error::{Error, Result};
 
-/// Of this program.
+/// The version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -57,7 +57,7 @@ pub fn collected<T: Send>(
 }
 
 thread_local! {
-    /// Whether this thread has an answer to a request for memory that is refused.
+    /// Whether this thread can handle a refused request for memory.
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 

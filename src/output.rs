@@ -13,8 +13,8 @@ pub use unfinished::forget_unfinished;
 
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// That [`write_atomically`] can write `path`, as far as can be told without writing it: a
-/// temporary file is made in its folder and dropped. For knowing it before hours of work.
+/// Checks that [`write_atomically`] can write `path`, as far as that is possible without writing it: a
+/// temporary file is made in its folder and dropped. Useful before hours of work.
 ///
 /// # Errors
 /// In the words of [`write_atomically`].
@@ -25,13 +25,13 @@ pub fn check_writable(path: &Path) -> Result<()> {
     }
 }
 
-/// Whether [`write_atomically`] makes a file of `path`, and not a device or a pipe receives it.
+/// Whether [`write_atomically`] would create a file at `path`, rather than write to a device or a pipe.
 pub fn becomes_file(path: &Path) -> bool {
     std::fs::metadata(path).map_or(true, |there| there.is_file())
 }
 
-/// That files can be written into a folder, or that it can be made where it is not there yet, as far as
-/// can be told without making it.
+/// Checks that files can be written into a folder, or that the folder can be created if it does not
+/// exist, as far as that is possible without creating it.
 ///
 /// # Errors
 /// What is there is no folder, or takes no files.

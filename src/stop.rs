@@ -42,7 +42,7 @@ pub fn end_at_once(say: impl Fn() -> ErrorKind + Send + 'static) -> Result<()> {
     spawn(move || Some(say()))
 }
 
-/// Which of the signals that [`listen`] hears.
+/// One of the signals that [`listen`] hears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     First,
@@ -72,9 +72,9 @@ pub fn requested() -> bool {
     REQUESTED.load(Ordering::Relaxed)
 }
 
-/// What work came to, where `check` fails when it is time to stop: a failure then is the stop, not a
-/// fault. For a signal while kernels are built makes LLVM remove the files that it is writing, so
-/// that the build fails.
+/// The outcome of work, or the stop if `check` fails because it is time to stop: a failure then is the
+/// stop, not a fault. A signal while kernels are built makes LLVM remove the files that it is writing,
+/// so that the build fails.
 ///
 /// # Errors
 /// Those of `check` where the work failed, else the work's own.

@@ -12,25 +12,25 @@ use super::{FinishedFrames, FrameNames};
 
 /// A frame on its way to its file.
 pub struct Shot<T> {
-    /// Which one of the path it is.
+    /// The frame's index along the path.
     pub index: u32,
     pub frame: Frame,
     /// Its own, as the text that pictures carry.
     pub scene: String,
-    /// What is to be recorded of it.
+    /// The record of it that the caller wants back.
     pub about: T,
 }
 
 /// The record of a frame that has been written.
 pub struct Written<T> {
-    /// Which one of the path it is.
+    /// The frame's index along the path.
     pub index: u32,
     pub about: T,
     /// Encoding and writing it; in an animation the last one's takes in closing the file.
     pub encode_ms: f64,
 }
 
-/// What frames are written to.
+/// Where frames are written to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Destination {
     /// Every frame to a file of its own.
@@ -47,8 +47,8 @@ pub enum Destination {
     },
 }
 
-/// What a picture depends on beside its scene. Pictures carry it, so that no frame of another volume,
-/// device or program is taken for a finished one.
+/// Everything but its scene that a picture depends on. Pictures carry it, so that no frame of another
+/// volume, device or program is taken for a finished one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
     /// The program's.
@@ -110,7 +110,7 @@ impl Destination {
         }
     }
 
-    /// Whether a frame is finished already: whole, of this scene and this provenance.
+    /// Whether a frame is finished already: complete, of this scene and this provenance.
     pub fn holds(&self, index: u32, size: ImageSize, scene: &str, from: &Provenance) -> bool {
         match self {
             Self::Pictures { names, encoding } => {

@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// Of `count` processes the one of this index: frames k with k ≡ index (mod count). Frames side by
-/// side cost alike, so that all shares do.
+/// One process's share of `count`: the frames k with k ≡ index (mod count). Neighbouring frames cost
+/// about the same, so the shares do too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: u32,
@@ -62,7 +62,7 @@ impl fmt::Display for Shard {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
     Given(Shard),
-    /// As the environment says, which the program that started this one set.
+    /// Taken from the environment, as set by the launcher that started this program.
     Auto,
 }
 

@@ -24,7 +24,7 @@ use super::stats::{DeviceStats, PassStats, Times};
 use super::terminal::note;
 
 group! {
-    /// What renders, and how it is used.
+    /// The options that choose the device and how it is used.
     #[command(next_help_heading = "Device")]
     pub struct DeviceOptions {
         /// An OpenCL device by its number, part of its name, cpu or gpu; or reference: the
@@ -53,7 +53,7 @@ impl DeviceOptions {
         self.over(remaining)
     }
 
-    /// Whether the device named is one that has this.
+    /// Whether the named device meets this need.
     fn meets(&self, need: Need) -> bool {
         let is_reference = self.device.as_ref().is_some_and(DeviceName::is_reference);
         need != Need::OpenCl || !is_reference
@@ -133,7 +133,7 @@ pub struct Rendered {
 }
 
 impl Backend {
-    /// What the options name: the reference, or a device.
+    /// Opens what the options name: the reference, or a device.
     ///
     /// # Errors
     /// Usage: work groups for the reference. No device of that name, or none at all.
@@ -164,7 +164,7 @@ impl Backend {
         }
     }
 
-    /// What renders, for the statistics.
+    /// The device, for the statistics.
     pub fn device(&self) -> DeviceStats {
         match self {
             Self::Reference => reference_stats(),
@@ -180,8 +180,7 @@ impl Backend {
         }
     }
 
-    /// What the device needs of the volume, besides the volume: nothing where the reference
-    /// renders.
+    /// Prepares what the device needs beside the volume itself; nothing for the reference.
     pub fn prepare(
         &self,
         volume: &Volume,
@@ -218,7 +217,7 @@ impl Backend {
     }
 }
 
-/// What an [`Backend`] made of a volume.
+/// What a [`Backend`] has prepared from a volume.
 pub enum Prepared {
     Nothing,
     Octree { octree: Octree, octree_ms: f64 },

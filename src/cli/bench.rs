@@ -42,7 +42,7 @@ pub struct BenchArguments {
 }
 
 group! {
-    /// What is measured, and how thoroughly.
+    /// The options of a measurement: what is measured, and how thoroughly.
     pub struct BenchOptions {
         /// The experiment's name
         #[arg(value_name = "EXPERIMENT")]

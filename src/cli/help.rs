@@ -7,7 +7,7 @@ use super::Arguments;
 /// Columns of the help where the output is no terminal, and at most.
 pub const WIDTH: usize = 100;
 
-/// What the parser puts before and between the columns of the short help.
+/// The width that the parser puts before and between the columns of the short help.
 const MARGINS: usize = 12;
 
 /// Modes and the like, which an option's text begins with.

@@ -76,7 +76,7 @@ impl InfoArguments {
     }
 }
 
-/// What a picture carries: what it was made by, then the scene as a scene file.
+/// Prints what a picture carries: the program and volume that made it, then the scene as a scene file.
 fn print_carried(carried: &Carried, json: bool) -> Result<()> {
     let picture = carried.picture.display();
     if json {

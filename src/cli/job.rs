@@ -31,7 +31,7 @@ pub struct JobArguments {
 
 /// Flags over the scene file, checked as far as can be without reading the volume.
 pub struct Job {
-    /// As [`Source::stored`].
+    /// The options of the scene as pictures store them ([`Source::stored`]).
     pub options: SceneOptions,
     /// Decides how rays are followed, where there is one.
     pub bound: Option<ErrorBound>,

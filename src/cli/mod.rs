@@ -141,8 +141,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// What the program needs of the system before it works: threads, and an end in words where a file that
-/// it reads is shortened.
+/// Prepares the process: the thread pool, and a readable error in case a file is shortened while it is
+/// read.
 fn ready() -> Result<()> {
     rayon::ThreadPoolBuilder::new()
         .build_global()

@@ -129,7 +129,8 @@ impl OutputOptions {
     }
 }
 
-/// Whether a file of this name holds what an option needs; one of no known format is refused elsewhere.
+/// Whether a file of this name can hold what an option needs; a name of no known format is refused
+/// elsewhere.
 fn holds(path: &Path, need: Need) -> bool {
     if AnimationFormat::from_path(path).is_some() {
         return !matches!(need, Need::Layered | Need::Png | Need::Jpeg);
@@ -145,7 +146,7 @@ fn holds(path: &Path, need: Need) -> bool {
     }
 }
 
-/// What a rendering writes.
+/// The files that a rendering writes.
 pub struct Files {
     pub picture: PathBuf,
     pub encoding: Encoding,
@@ -170,13 +171,13 @@ impl Files {
     }
 }
 
-/// That `path` can be written, and is none of the files that the job reads.
+/// Checks that `path` can be written, and is none of the files that the job reads.
 pub fn check(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     check_spared(path, inputs)?;
     check_writable(path)
 }
 
-/// That `path` is none of the files that the job reads.
+/// Checks that `path` is none of the files that the job reads.
 pub fn check_spared(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     if inputs
         .iter()
@@ -190,8 +191,8 @@ pub fn check_spared(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     Ok(())
 }
 
-/// The same file, named so that the working folder does not matter. A symbolic link keeps its own
-/// name: a raw file's layout, and which files belong to a header, may lie in it.
+/// The absolute path of a file, independent of the working folder. A symbolic link keeps its own name: a
+/// raw file's layout, and which files belong to a header, may lie in it.
 fn absolute(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default();
     match fs::canonicalize(folder(path)) {
@@ -207,8 +208,8 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// That no file of a sequence of so many frames replaces one that the job reads or, in `stats`,
-/// writes besides; and that they can be written, their folder being made where there is none.
+/// Checks that no file of a sequence of so many frames replaces one that the job reads or that `stats`
+/// writes, and that the files can be written, their folder being created if it does not exist.
 pub fn check_sequence(
     names: &FrameNames,
     frames: FrameCount,
@@ -261,7 +262,7 @@ pub enum Layers {
 }
 
 impl Layers {
-    /// Whether pictures of a mode have the layer: what is proven of a hit or a miss is of surfaces.
+    /// Whether pictures of a mode have the layer: certificates exist for surfaces alone.
     fn is_of(layer: Layer, mode: Mode) -> bool {
         layer != Layer::Certificate || mode == Mode::Iso
     }

@@ -49,7 +49,7 @@ pub struct PhantomArguments {
 }
 
 group! {
-    /// What is made, of which voxels.
+    /// The options of a phantom: what it contains, and its voxels.
     pub struct PhantomOptions {
         /// What it contains: a kind, or hardcase:NAME
         #[arg(value_name = "KIND", value_parser = Kinds)]
@@ -249,7 +249,7 @@ fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {
     })
 }
 
-/// What is made.
+/// The kind of volume that is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     Phantom(PhantomKind),

@@ -140,7 +140,7 @@ fn write_picture(drawing: &Drawing<'_>, frame: &Frame, resolved: &Resolved) -> R
     )
 }
 
-/// What pictures of this volume by this engine depend on beside their scene.
+/// Everything but their scene that pictures of this volume by this backend depend on.
 pub fn provenance(loaded: &Loaded, backend: &Backend) -> Provenance {
     Provenance {
         version: VERSION,
@@ -195,7 +195,7 @@ fn write_stats(
     stats::write(&stats, path)
 }
 
-/// What precomputed gradients cost and are worth.
+/// The note on the cost and the use of precomputed gradients.
 pub fn gradient_note(figures: &GradientFigures) -> String {
     let megabytes = figures.bytes as f64 / 1e6;
     let angle = match figures.angle {

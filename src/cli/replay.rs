@@ -47,7 +47,7 @@ pub struct ReplayArguments {
 }
 
 group! {
-    /// Which picture, and of what.
+    /// The options that name the picture and its volume.
     pub struct ReplayOptions {
         /// The picture: a .png or .exr that render or orbit wrote
         #[arg(value_name = "IMAGE")]
@@ -138,7 +138,7 @@ fn as_it_was(mut files: Files, output: &OutputOptions, carried: &Carried) -> Res
     Ok(files)
 }
 
-/// What renders: what is requested, else what rendered the picture, where it is here.
+/// Opens the requested device, else the one that rendered the picture, if it is here.
 fn open(mut device: DeviceOptions, carried: &Carried) -> Result<Backend> {
     if device.device.is_some() {
         return Backend::open(&device);

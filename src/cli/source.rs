@@ -27,7 +27,7 @@ pub struct Loaded {
     pub smooth_ms: f64,
 }
 
-/// What has to be known before a volume is read.
+/// The volume's file and everything that must be known before it is read.
 pub struct Source {
     pub path: PathBuf,
     pub leaf: Leaf,
@@ -36,7 +36,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// What the options say of the volume's file, checked as far as can be without reading it.
+    /// The volume's file as the options describe it, checked as far as is possible without reading it.
     ///
     /// # Errors
     /// No volume named; a layout or leaf edge that makes no sense.

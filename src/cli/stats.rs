@@ -112,7 +112,7 @@ pub struct Memory {
     /// The most that the process held; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
-    /// Of these, precomputed gradients.
+    /// The part of these bytes that holds precomputed gradients.
     pub gradient_bytes: u64,
     /// From host to device.
     pub uploaded_bytes: u64,
@@ -129,7 +129,7 @@ impl Memory {
     }
 }
 
-/// Of an orbit: the sums over the frames that were made, and each of them.
+/// The statistics of an orbit: the sums over the frames that were made, and each of them.
 #[derive(Serialize)]
 pub struct OrbitStats<'a> {
     /// The scene is that of frame 0.
@@ -139,7 +139,7 @@ pub struct OrbitStats<'a> {
     pub frames: Vec<FrameStats>,
 }
 
-/// What was turned about what, and this process's share of it.
+/// An orbit's axis and angles, and this process's share of it.
 #[derive(Serialize)]
 pub struct OrbitFigures {
     pub frames: u32,

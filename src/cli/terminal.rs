@@ -60,7 +60,7 @@ impl Lines<'_> {
     }
 }
 
-/// Whether nothing but errors is said, as far as that was said already.
+/// Whether only errors are printed, once that is decided.
 static QUIET: OnceLock<bool> = OnceLock::new();
 
 /// Says whether nothing but errors is said from now on. The first call is the one that counts: flags are
@@ -69,7 +69,7 @@ pub fn set_quiet(quiet: bool) {
     let _ = QUIET.set(quiet);
 }
 
-/// Whether nothing but errors is said.
+/// Whether only errors are printed.
 pub fn is_quiet() -> bool {
     QUIET.get().is_some_and(|quiet| *quiet)
 }

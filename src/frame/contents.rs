@@ -90,8 +90,8 @@ impl Frame {
         planes
     }
 
-    /// Whether another picture shows the same to the last bit, in all planes but the counters, which say how
-    /// it was made.
+    /// Whether another picture is bit-identical in all planes but the counters, which say how it was
+    /// made.
     pub fn bit_equal(&self, other: &Self) -> bool {
         fn same<T: bytemuck::NoUninit>(a: &[T], b: &[T]) -> bool {
             bytemuck::cast_slice::<T, u8>(a) == bytemuck::cast_slice::<T, u8>(b)

@@ -61,18 +61,18 @@ impl Format {
             .hint(format!("use one of {}", names.join(" "))))
     }
 
-    /// Whether it holds the picture as displayed (sRGB-encoded, opaque): [`super::Frame::display`].
-    /// The others hold linear light with alpha.
+    /// Whether the format holds the picture as displayed (sRGB-encoded, opaque):
+    /// [`super::Frame::display`]. The others hold linear light with alpha.
     pub fn is_display(self) -> bool {
         !self.carries_layers()
     }
 
-    /// Whether it carries the scene and the version as texts.
+    /// Whether the format carries the scene and the version as texts.
     pub fn carries_metadata(self) -> bool {
         matches!(self, Self::Png | Self::Exr)
     }
 
-    /// Whether it holds the layers beside the colour.
+    /// Whether the format holds the layers beside the colour.
     pub fn carries_layers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)
     }
@@ -110,7 +110,7 @@ impl Encoding {
         }
     }
 
-    /// That the format can do what is asked of it; [`super::write`] checks it too.
+    /// Checks that the format supports this encoding; [`super::write`] checks it too.
     ///
     /// # Errors
     /// Layers in a format without, 16 bits in another format than PNG, a quality outside 1..=100
@@ -137,7 +137,7 @@ impl Encoding {
         Ok(())
     }
 
-    /// That a picture of this size fits into the format; [`super::write`] checks it too. All but
+    /// Checks that a picture of this size fits into the format; [`super::write`] checks it too. All but
     /// WebP hold every [`ImageSize`]: JPEG's limit is [`ImageSize::MAX_SIDE_PX`] itself.
     ///
     /// # Errors

@@ -10,9 +10,9 @@ use crate::extent::ImageSize;
 
 use super::{BitDepth, Encoding, Format, channels, read_metadata};
 
-/// Whether `path` is a whole picture of this size and encoding that carries all of `metadata`: one
-/// that need not be written again. Every pixel is read; a file that is missing, torn or anything
-/// else is none. Only formats that [carry metadata](Format::carries_metadata) can say.
+/// Whether `path` is a complete picture of this size and encoding that carries all of `metadata`, and so
+/// need not be written again. Every pixel is read; a file that is missing, truncated or anything else is
+/// not complete. Only formats that [carry metadata](Format::carries_metadata) can be verified.
 pub fn is_complete(
     path: &Path,
     size: ImageSize,

@@ -59,7 +59,7 @@ impl Binaries {
         }
     }
 
-    /// What is in the folder is used even where nothing can be added.
+    /// Opens the cache in a folder; what is there is used even if nothing can be added.
     fn in_folder(folder: &Path) -> Result<Self> {
         let cache = CacheFolder::in_folder(folder, EXTENSION)?;
         let note = cache::check_writable(folder).err().map(not_cached);

@@ -50,7 +50,7 @@ pub struct Request {
     pub signature: Vec<(String, String)>,
 }
 
-/// What distinguishes a device from another that has its place now.
+/// Properties that distinguish a device from another that has its place now.
 pub fn identity(info: &DeviceInfo) -> [String; 4] {
     [&info.name, &info.platform, &info.driver, &info.version].map(Clone::clone)
 }

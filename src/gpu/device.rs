@@ -111,7 +111,7 @@ impl Device {
         })
     }
 
-    /// What is known of the device.
+    /// The properties of the device.
     pub fn info(&self) -> &DeviceInfo {
         &self.info
     }
@@ -208,7 +208,8 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     Ok(found)
 }
 
-/// Whether any driver is installed: found out first, because `ocl` waits ten seconds for one to appear.
+/// Whether any driver is installed. This is checked first, because `ocl` waits ten seconds for one to
+/// appear.
 fn any_platform() -> bool {
     let mut count = 0;
     // SAFETY: no list of length 0 makes OpenCL give the count alone.

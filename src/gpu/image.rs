@@ -55,7 +55,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Whether the device can hold an image of so many texels along x, y and z.
+    /// Checks that the device can hold an image of so many texels along x, y and z.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of this channel.

@@ -115,7 +115,7 @@ impl Scratch {
         }
     }
 
-    /// Whether a folder was this user's and nobody holds it.
+    /// Whether a folder belonged to a process of this user that no longer runs.
     fn is_left(&self, folder: &Path) -> bool {
         let (Ok(there), Ok(own)) = (folder.symlink_metadata(), self.path.symlink_metadata()) else {
             return false;
@@ -144,7 +144,8 @@ fn same_owner(_: &fs::Metadata, _: &fs::Metadata) -> bool {
     true
 }
 
-/// Whether files can be made in a place, and loaded as programs, which some mounts forbid; and have room.
+/// Whether files can be created in a folder and loaded as programs, which some mounts forbid, and there
+/// is enough space.
 fn is_fit(place: &Path) -> bool {
     #[cfg(unix)]
     {

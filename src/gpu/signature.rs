@@ -23,7 +23,8 @@ pub(super) enum ParameterType {
     Value(&'static str),
 }
 
-/// As OpenCL reports it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
+/// The type as OpenCL reports it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a
+/// value.
 impl fmt::Display for ParameterType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -72,7 +72,7 @@ impl fmt::Display for Leaf {
 pub struct Level {
     /// Nodes along x, y, z.
     pub size: [u32; 3],
-    /// Of the level's first node in the tree's arrays; nodes follow x fastest.
+    /// The index of the level's first node in the tree's arrays; nodes follow x fastest.
     pub offset: u32,
 }
 
@@ -113,7 +113,7 @@ impl Octree {
         &self.averages
     }
 
-    /// Of all nodes' minima, maxima and averages.
+    /// The size of all nodes' minima, maxima and averages, in bytes.
     pub fn bytes(&self) -> u64 {
         (size_of_val(&*self.ranges) + size_of_val(&*self.averages)) as u64
     }

@@ -44,10 +44,10 @@ impl From<bool> for Switch {
     }
 }
 
-/// What NaN and ±Inf voxels are read as (`--non-finite`).
+/// The treatment of NaN and ±Inf voxels (`--non-finite`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NonFiniteRule {
-    /// As the smallest finite value of the volume.
+    /// They are read as the smallest finite value of the volume.
     #[default]
     Replace,
     /// Not at all: they are an error.

@@ -40,7 +40,7 @@ impl ErrorMetric {
         Self::Value,
     ];
 
-    /// As users write it.
+    /// The metric's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rmse => "rmse",

@@ -5,7 +5,7 @@ pub(crate) trait Keys: Sized {
     /// Returns the keys of those given.
     fn given(&self) -> Vec<String>;
 
-    /// The same options without those whose key does not pass.
+    /// Returns the options whose key passes.
     #[must_use]
     fn retaining(self, passes: impl Fn(&str) -> bool) -> Self;
 }
@@ -29,7 +29,7 @@ macro_rules! group {
         }
 
         impl $name {
-            /// The same options, those not given taken from `base`.
+            /// Returns these options, those not given taken from `base`.
             #[must_use]
             pub fn over(self, base: Self) -> Self {
                 Self { $($field: self.$field.or(base.$field),)* }

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::scene::Storage;
 
 group! {
-    /// What decides how rays are followed where the user does not.
+    /// The options by which the program decides how rays are followed.
     #[command(next_help_heading = "Sampling")]
     pub struct ToleranceOptions {
         /// Follow rays in the cheapest way whose error, against the double-precision reference, is

@@ -89,7 +89,7 @@ impl SceneOptions {
         self.picture.mode()
     }
 
-    /// The same options, those not given taken from `base`, whatever they rule out in it.
+    /// Returns these options, those not given taken from `base`, whatever they rule out in it.
     fn or(self, base: Self) -> Self {
         Self {
             volume: self.volume.over(base.volume),

@@ -24,7 +24,7 @@ text_form!(
 );
 
 group! {
-    /// What is shown.
+    /// The options of the picture that is shown.
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Picture")]
     pub struct PictureOptions {

@@ -26,8 +26,8 @@ impl SceneOptions {
         })
     }
 
-    /// Whether these flags take away from a file what one of its options needs: what the file never had is
-    /// refused, unless a flag has to do with it.
+    /// Whether these flags take away from a file what one of its options needs. What the file never had
+    /// is refused, unless a flag has to do with it.
     fn rules_out(&self, need: Need, file: &Self, together: &Self) -> bool {
         let is_other_mode = is_other_mode(self, file);
         let is_decided = match need {
@@ -49,7 +49,7 @@ mod tests {
         SceneOptions::parse(text, "scene").unwrap()
     }
 
-    /// Of two options that contradict each other the flag wins, whichever it is.
+    /// If two options contradict each other the flag wins, whichever it is.
     #[test]
     fn a_flag_wins_over_what_contradicts_it_in_a_file() {
         let eye = "eye = [9, -40, 3]";

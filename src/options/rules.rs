@@ -19,10 +19,10 @@ pub(crate) enum Group {
     Bench,
 }
 
-/// What an option decides.
+/// The part of a picture that an option decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Decides {
-    /// Which volume, what is seen of it and from where, or something beside the scene.
+    /// The volume, the picture of it and the camera, or something beside the scene.
     What,
     /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), or changes
     /// what the reference is (filter, gradient).
@@ -33,7 +33,7 @@ pub(crate) enum Decides {
 
 use Decides::{How, HowWithinBound, What};
 
-/// What an option needs in order to mean something.
+/// Another choice that an option needs in order to mean something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Need {
     /// One of these modes; why no other.
@@ -204,7 +204,7 @@ pub(crate) fn rule(group: Group, option: &str) -> Option<&'static Rule> {
     RULES.iter().find(is_it)
 }
 
-/// Whether an option has all that it needs.
+/// Whether all needs of an option are met.
 pub(crate) fn has_needs(group: Group, option: &str, is_met: impl Fn(Need) -> bool) -> bool {
     let needs = rule(group, option).map_or(&[][..], |rule| rule.needs);
     needs.iter().all(|need| is_met(*need))
@@ -245,7 +245,7 @@ pub(super) struct Contradiction {
     pub hint: &'static str,
 }
 
-/// What a scene's options must not say together.
+/// The options of a scene that contradict each other.
 pub(super) const CONTRADICTIONS: &[Contradiction] = &[
     Contradiction {
         is_in: |all| all.camera.fov.is_some() && all.camera.ortho.is_some(),
@@ -292,22 +292,23 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
     },
 ];
 
-/// Whether nodes are taken for their averages.
+/// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
     options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
 }
 
 const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
 
-/// What of a scene file gives way to flags, beside the flags' own keys and what no longer has what it needs.
+/// Options of a scene file that flags replace, beside those of the flags' own keys and those that no
+/// longer have what they need.
 pub(super) struct Replaced {
-    /// Whether these flags do so, to this file.
+    /// Whether these flags replace options of this file.
     pub by: fn(&SceneOptions, &SceneOptions) -> bool,
     /// The file's options that are dropped.
     pub options: &'static [&'static str],
 }
 
-/// Which flags win over which options of a scene file.
+/// All flags that win over other options of a scene file.
 pub(super) const REPLACED: &[Replaced] = &[
     // An integral is not sampled as a surface is: neither's sampling is the other's.
     Replaced {

@@ -23,7 +23,7 @@ pub struct SceneFile {
     place: String,
     /// Where the files that it names are looked for.
     named: Named,
-    /// What of the text it is, if not all.
+    /// The part of the text that was read, if not all.
     part: Option<Part>,
 }
 
@@ -31,7 +31,8 @@ pub struct SceneFile {
 enum Named {
     /// Relative to this folder.
     In(PathBuf),
-    /// As the picture's maker named them, else beside this picture, else in the working folder.
+    /// They are where the picture's maker named them, else beside this picture, else in the working
+    /// folder.
     NearPicture(PathBuf),
 }
 
@@ -108,7 +109,7 @@ impl SceneFile {
             .map_err(|error| located(&error, &self.text, &self.place))
     }
 
-    /// That every key is one of `known`.
+    /// Checks that every key is one of `known`.
     ///
     /// # Errors
     /// No TOML; the first key that is not, as `place:line: …`.
@@ -204,8 +205,8 @@ pub fn flag_names(command: &clap::Command) -> Vec<String> {
 }
 
 impl SceneOptions {
-    /// What a scene file says of the scene. Its `volume`, and its `tf` when that is a file, are
-    /// relative to it.
+    /// The options of the scene that a scene file gives. Its `volume`, and its `tf` when that is a file,
+    /// are relative to it.
     ///
     /// # Errors
     /// As [`SceneFile::group`].
@@ -247,7 +248,7 @@ impl SceneOptions {
 }
 
 impl VolumeOptions {
-    /// What a scene file says of the volume, whose file is relative to it.
+    /// The options of the volume that a scene file gives, whose file is relative to it.
     ///
     /// # Errors
     /// As [`SceneFile::group`].

@@ -74,7 +74,7 @@ impl Setting {
 }
 
 impl SceneOptions {
-    /// What is seen, without how rays are followed.
+    /// The options of the picture, without those that say how rays are followed.
     #[must_use]
     pub fn what(&self) -> Self {
         self.clone().retaining(|option| !is_how(option))

@@ -16,7 +16,7 @@ use tempfile::TempPath;
 
 const PREFIX: &str = ".unfinished-";
 
-/// What another machine left is removed when it is older.
+/// The age at which a file that another machine left is removed.
 const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 
 /// A file that takes its name when it is whole, and is removed when it is dropped before.

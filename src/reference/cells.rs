@@ -160,8 +160,8 @@ mod tests {
     use super::super::interval::IndexRay;
     use super::*;
 
-    /// What a correct walk satisfies: it tiles the interval, and each segment's middle lies in its
-    /// own box.
+    /// Counts faults of a walk: it must tile the interval, and each segment's middle must lie in its own
+    /// box.
     fn faults(dims: Dims, walk: Filter, lattice_filter: Filter, interval: &Interval) -> usize {
         let segments: Vec<Segment> = Walk::new(Lattice::new(dims, walk), interval).collect();
         let lattice = Lattice::new(dims, lattice_filter);

@@ -36,7 +36,7 @@ const STEADY: f64 = 0.8;
 /// Light behind this transmittance is not followed.
 const DARK: f64 = 1e-12;
 
-/// What a ray sees of an emitting, absorbing medium.
+/// The light that a ray receives from an emitting, absorbing medium.
 #[derive(Debug, Clone, Copy)]
 pub struct Emitted {
     /// Premultiplied linear light.
@@ -50,11 +50,11 @@ pub struct Emitted {
 /// Means along a ray, each point weighted as its light is that reaches the eye: ∫ x κT dt / ∫ κT dt.
 #[derive(Debug, Clone, Copy)]
 pub struct Means {
-    /// Of the distance from the interval's start.
+    /// The mean distance from the interval's start, mm.
     pub at_mm: f64,
-    /// Of Φ; physical.
+    /// The mean of Φ, physical.
     pub value: f64,
-    /// Of the unit normals, world space, itself not of unit length; 0 where none were asked for.
+    /// The mean of the unit normals, world space, itself not of unit length; 0 if none were requested.
     pub normal_world: DVec3,
 }
 
@@ -67,7 +67,7 @@ pub struct Shading {
     pub gradient_world_from_index: DMat3,
 }
 
-/// Which way normals are found and turned to the world.
+/// How normals are computed and turned to world space.
 #[derive(Debug, Clone, Copy)]
 pub struct Normals {
     pub gradient: Gradient,
@@ -121,7 +121,7 @@ pub fn means<T: Voxel>(
     }
 }
 
-/// What is summed over a segment's points: N numbers each, weighted by κT.
+/// A quantity that is summed over a segment's points: N numbers each, weighted by κT.
 trait Points<const N: usize> {
     /// At s of the segment, where Φ is `value` and the medium has a colour.
     fn at(&self, s: f64, value: f64, color: [f64; 3]) -> [f64; N];
@@ -129,7 +129,7 @@ trait Points<const N: usize> {
     /// Where these numbers are not smooth.
     fn push_breaks(&self, _breaks: &mut Breaks) {}
 
-    /// Whether they surely change little on a piece: a swing might lie between all nodes.
+    /// Whether the numbers surely change little on a piece: a swing might lie between all nodes.
     fn is_steady(&self, _from: f64, _to: f64) -> bool {
         true
     }
@@ -269,7 +269,7 @@ struct Integrand<P> {
 }
 
 impl<P> Integrand<P> {
-    /// What is summed, and absorption per mm, at a point.
+    /// The summed quantity, and the absorption per mm, at a point.
     fn emits<const N: usize>(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; N], f64)
     where
         P: Points<N>,
@@ -314,7 +314,7 @@ impl<const N: usize> Panel<N> {
     }
 }
 
-/// What is gathered so far.
+/// The sums along a ray so far.
 struct Ray<'a, const N: usize> {
     medium: &'a Medium,
     tolerance_per_mm: f64,

@@ -18,7 +18,7 @@ pub struct Face {
     pub low: bool,
 }
 
-/// What a ray enters its interval through.
+/// The face or plane through which a ray enters its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry {
     Face(Face),

@@ -14,7 +14,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Whether it absorbs nothing.
+    /// Whether the ramp absorbs nothing.
     pub fn is_clear(&self) -> bool {
         self.below.opacity == 0.0 && self.above.opacity == 0.0
     }
@@ -110,7 +110,7 @@ impl Medium {
         &self.levels[first..end.max(first)]
     }
 
-    /// What an error `noise` of Φ may do to the absorption of a range.
+    /// The largest change of the absorption of a range by an error `noise` of Φ, per mm.
     pub fn noise_per_mm(&self, ramp: &Ramp, noise: f64) -> f64 {
         if ramp.width == 0.0 {
             return 0.0;

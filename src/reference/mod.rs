@@ -101,7 +101,7 @@ pub fn render_pixels(
     Ok(frame)
 }
 
-/// What the ray of a pixel's centre sees, the pixels counted row by row.
+/// Casts the ray of a pixel's centre, the pixels counted row by row.
 fn cast_pixel(tracer: &Tracer, scene: &Scene, pixel: u32) -> RayResult {
     let width = scene.size.width();
     let (x, y) = (pixel % width, pixel / width);

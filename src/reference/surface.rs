@@ -17,7 +17,7 @@ pub struct Crossing {
     pub value: f64,
     /// ∇Φ in index space; 0 on a cap.
     pub gradient: [f64; 3],
-    /// What a cap closes: it has the normal of that.
+    /// The face or plane that a cap closes, whose normal it has.
     pub cap: Option<Entry>,
 }
 

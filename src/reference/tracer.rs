@@ -22,7 +22,7 @@ use super::surface::{Crossing, first_crossing};
 /// rising and falling are told apart.
 const NOISE_SHARE: f64 = 1e-13;
 
-/// What a ray sees; all 0 and the depth +∞ where it sees nothing.
+/// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayResult {
     /// Linear light, premultiplied, without background.
@@ -104,7 +104,7 @@ impl<'a> Tracer<'a> {
         Self { wanted, ..self }
     }
 
-    /// What one ray sees. Its direction is a unit vector in world space.
+    /// Casts one ray. Its direction is a unit vector in world space.
     pub fn cast(&self, ray: Ray) -> RayResult {
         // Relative to the volume's origin, so that a far one costs no digits.
         let origin_index = self.index_from_world * (ray.origin_world - self.origin_world);
@@ -227,7 +227,7 @@ impl<'a> Tracer<'a> {
         self.with_means(result, field, interval, medium, dir_world)
     }
 
-    /// What a ray sees of a medium, with the means that are wanted.
+    /// The result for a medium, with the means that are wanted.
     fn with_means<T: Voxel>(
         &self,
         seen: RayResult,

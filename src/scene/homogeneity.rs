@@ -2,7 +2,7 @@
 
 use super::HomogeneityLimit;
 
-/// What `--homogeneity E` limits.
+/// The quantity that `--homogeneity E` limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HomogeneityRule {
     /// The error of a pixel: a node counts when no ray can lose more than E, in any channel of its

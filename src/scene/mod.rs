@@ -60,7 +60,7 @@ pub struct Scene {
     pub clip_planes: Vec<ClipPlane>,
     pub sampling: Sampling,
     pub light: Light,
-    /// Of normals, in the layer and in shading.
+    /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
     pub tone: Tone,
 }

@@ -8,7 +8,7 @@ use super::Camera;
 use crate::error::{Error, Result};
 use crate::number_text::numbers;
 
-/// What an orbit turns about: a line through the camera's target (`--axis`).
+/// The axis of an orbit: a line through the camera's target (`--axis`).
 ///
 /// The camera's own up is how 3D Slicer spins a view (its yaw) and what ParaView's orbit takes for
 /// its normal; it is never the line of sight. World z is the patient's long axis, about which a

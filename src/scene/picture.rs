@@ -101,7 +101,7 @@ impl Picture {
     }
 }
 
-/// Which value of a ray is shown.
+/// The value of a ray that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
     Maximum,

@@ -57,7 +57,7 @@ pub enum Storage {
 impl Storage {
     pub const ALL: [Self; 3] = [Self::Buffer, Self::Image, Self::Filtered];
 
-    /// Whether rays can be followed in this way.
+    /// Checks that rays can be followed by this traversal.
     ///
     /// # Errors
     /// Usage: the device is to filter where cells are solved from their voxels, or where nothing is
@@ -193,7 +193,7 @@ impl std::fmt::Display for Refine {
 /// How a ray is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// Of surfaces and projections.
+    /// How surfaces and projections are sampled.
     pub method: SamplingMethod,
     /// Distance of samples where they are at fixed steps.
     pub step: StepVoxels,

@@ -10,7 +10,7 @@ use super::Rgb;
 pub struct Knot {
     pub value: f64,
     pub color: Rgb,
-    /// Of a path of the unit length, 0..1.
+    /// The opacity of a path of the unit length, 0..1.
     pub opacity: f64,
 }
 
@@ -95,7 +95,7 @@ impl TransferFunction {
         knots
     }
 
-    /// The same function of values that `moved` gives, which must keep their order (but for
+    /// Returns the same function of values that `moved` gives, which must keep their order (but for
     /// rounding).
     #[must_use]
     pub fn moved(&self, moved: impl Fn(f64) -> f64) -> Self {

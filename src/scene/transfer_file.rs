@@ -21,14 +21,14 @@ pub struct TransferFile {
     /// The path length which the opacities are of, mm.
     #[serde(default = "one", deserialize_with = "positive")]
     pub unit_length_mm: f64,
-    /// What the points' values are.
+    /// The units of the points' values.
     #[serde(default)]
     pub units: TransferUnits,
     #[serde(deserialize_with = "ascending")]
     pub points: Vec<[f64; 5]>,
 }
 
-/// What the values of a transfer function's points are.
+/// The units of the values of a transfer function's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TransferUnits {
@@ -90,7 +90,7 @@ impl TransferFile {
         toml::from_str(text).map_err(|error| located(&error, text, place))
     }
 
-    /// The same function over physical values, its shares taken of this range.
+    /// Returns the same function over physical values, its shares taken of this range.
     #[must_use]
     pub fn in_values(mut self, range: Range) -> Self {
         if self.units == TransferUnits::Range {

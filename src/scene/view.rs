@@ -40,7 +40,7 @@ impl Orientation {
         Self { toward_eye, up }
     }
 
-    /// Of an eye in this direction from the target, its `up` made orthogonal; `None` where they
+    /// The view of an eye in this direction from the target, its `up` made orthogonal; `None` if they
     /// are zero or parallel.
     pub fn looking(toward_eye: DVec3, up: DVec3) -> Option<Self> {
         let toward_eye = toward_eye.try_normalize()?;

@@ -69,8 +69,8 @@ impl Geometry {
         })
     }
 
-    /// As [`Geometry::new`]; an axis of negative spacing is turned round, and its origin stays: so
-    /// ITK reads such files.
+    /// Makes a geometry like [`Geometry::new`], but an axis of negative spacing is turned round while
+    /// its origin stays, as ITK reads such files.
     ///
     /// # Errors
     /// As [`Geometry::new`].

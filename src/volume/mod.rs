@@ -79,7 +79,7 @@ impl Rescale {
     }
 }
 
-/// What to do with NaN and ±Inf voxels (`--non-finite`).
+/// The treatment of NaN and ±Inf voxels (`--non-finite`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NonFinite {
     /// Count them and read them as the smallest finite value of the volume.
@@ -265,7 +265,7 @@ impl Volume {
         Ok(())
     }
 
-    /// The same volume with a sentence for the user added (say, about digits lost on reading).
+    /// Adds a sentence for the user, such as about digits lost on reading.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());

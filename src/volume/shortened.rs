@@ -110,7 +110,7 @@ mod handler {
 
     use super::end_if_mapped;
 
-    /// What was done about SIGBUS before.
+    /// The handler of SIGBUS that was installed before.
     static BEFORE: OnceLock<sigaction> = OnceLock::new();
 
     pub fn install() -> io::Result<()> {

@@ -71,7 +71,7 @@ pub struct CompareArguments {
 const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
 
-/// What flags and scene file request together.
+/// A comparison as flags and scene file request it.
 struct Request {
     output: PathBuf,
     compare: CompareOptions,

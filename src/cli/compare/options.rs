@@ -9,7 +9,7 @@ use crate::options::{Count, FilePath, SceneFile, SceneOptions};
 use crate::scene::Mode;
 
 group! {
-    /// What is compared, and where it goes.
+    /// The options of a comparison: what is compared, and where the results go.
     #[command(next_help_heading = "Comparison")]
     pub struct CompareOptions {
         /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
@@ -46,7 +46,7 @@ group! {
 pub const OFF: &str = "off";
 
 impl CompareOptions {
-    /// What a scene file says of the comparison; the files that it names are relative to it.
+    /// The options that a scene file gives; the files that it names are relative to it.
     pub fn of_file(file: &SceneFile) -> Result<Self> {
         let options = file.group::<Self>()?;
         let named_here = |path: FilePath| file.named_here(path);

@@ -16,7 +16,7 @@ use super::super::outputs;
 use super::super::terminal::note;
 use super::options::OrbitOptions;
 
-/// What the flags and the scene file request.
+/// An orbit as flags and scene file request it.
 pub struct Plan {
     pub frames: FrameCount,
     /// By which the camera turns in all.
@@ -25,7 +25,7 @@ pub struct Plan {
     pub resume: bool,
     pub shard: Shard,
     pub destination: Destination,
-    /// Of the frames; an animation's is that of its pictures.
+    /// The encoding of the frames; for an animation, that of its pictures.
     pub encoding: Encoding,
     pub stats: Option<PathBuf>,
 }
@@ -76,7 +76,7 @@ impl Plan {
         }
     }
 
-    /// That a part of the frames, where no more are to be made, fits the rest.
+    /// Checks that a shard, which makes only a part of the frames, fits the other options.
     fn check_part(&self, job: &Job) -> Result<()> {
         let key = match (self.resume, self.shard) {
             (true, _) => "resume",

@@ -132,7 +132,7 @@ impl OrbitRunner<'_> {
         }
     }
 
-    /// What an error bound chooses, where there is one.
+    /// Chooses a setting for the error bound, if there is one.
     fn choose(&self, frames: &Frames, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
         let Some(bound) = self.job.bound else {
             return Ok(None);

@@ -36,7 +36,7 @@ impl AnimationFormat {
         ("webm", Self::WebM),
     ];
 
-    /// What the file name's extension says, in upper or lower case; `None` where it is no
+    /// The format that a file name's extension names, in upper or lower case; `None` if it is no
     /// animation's.
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
@@ -106,7 +106,7 @@ pub struct Animation {
     pub rate: FrameRate,
 }
 
-/// What comes: frames of one size, at least one.
+/// The frames to come: how many, their size and their rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reel {
     pub size: ImageSize,
@@ -114,7 +114,7 @@ pub struct Reel {
 }
 
 impl Animation {
-    /// That it can be written, as far as can be told beforehand.
+    /// Checks that the animation can be written, as far as is known beforehand.
     ///
     /// # Errors
     /// A frame rate that the format cannot do (usage); ffmpeg is needed, and missing or

@@ -19,7 +19,7 @@ pub struct Scale {
     pub range_width: f64,
 }
 
-/// What can be said of a picture against its reference: each figure where both have the planes.
+/// All error figures of a picture against its reference; each is there if both have the planes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Figures {
     pub color: Option<ColorError>,

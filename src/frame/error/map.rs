@@ -10,7 +10,7 @@ use super::entry::Entry;
 use super::geometry::{depth_entries, normal_entries};
 use super::value::value_entries;
 
-/// What a map shows.
+/// The quantity that a map shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// The mean of the three differences of the display planes' R, G and B, each with its sign:
@@ -33,7 +33,7 @@ impl Quantity {
         }
     }
 
-    /// What its numbers count.
+    /// The unit of its numbers.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Color => "of white",
@@ -55,7 +55,7 @@ impl Quantity {
         }
     }
 
-    /// Whether its numbers have a sign.
+    /// Whether the quantity has a sign.
     pub fn is_signed(self) -> bool {
         self != Self::Normal
     }
@@ -103,7 +103,7 @@ impl ErrorMap {
         })
     }
 
-    /// The same map, coloured to another scale.
+    /// Returns the same map, coloured to another scale.
     ///
     /// # Errors
     /// A scale that is not positive and finite.
@@ -117,8 +117,8 @@ impl ErrorMap {
         Ok(self)
     }
 
-    /// That it is not one colour to the eye: a hit is missed or added, or a difference reaches a
-    /// twentieth of the scale.
+    /// Whether the map shows a difference to the eye: a hit is missed or added, or a difference reaches
+    /// a twentieth of the scale.
     pub fn shows_something(&self) -> bool {
         self.entries.iter().any(|entry| match entry {
             Entry::Nothing => false,

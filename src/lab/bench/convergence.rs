@@ -23,7 +23,7 @@ const UNIT_MM: f64 = 3.0;
 const NEAR: ([f64; 3], f64) = ([0.9, 0.2, 0.4], 0.1);
 const FAR: ([f64; 3], f64) = ([0.1, 0.6, 0.8], 0.6);
 
-/// What each rule is known to have; preintegration takes the field for linear, as on the ramp it is.
+/// The known order of each rule; preintegration takes the field for linear, as it is on the ramp.
 pub const ORDERS: [(QuadratureMethod, f64); 6] = [
     (QuadratureMethod::Riemann, 1.0),
     (QuadratureMethod::Midpoint, 2.0),
@@ -98,7 +98,7 @@ impl Smooth {
         Self::new("cubic", corner, DVec3::ONE, phi)
     }
 
-    /// The same everywhere.
+    /// A medium that is the same everywhere.
     ///
     /// # Errors
     /// As [`Smooth::ramp`].
@@ -107,7 +107,7 @@ impl Smooth {
     }
 }
 
-/// Of one rule on one path, a step each.
+/// The errors of one rule on one path, one for each step size.
 pub struct Errors {
     /// The largest of the three channels.
     pub color: Vec<f64>,

@@ -35,7 +35,7 @@ impl Dataset {
         self.resolved(&Self::viewed(side_px, options))
     }
 
-    /// The same scene, its rays followed by a setting.
+    /// The dataset's scene, its rays followed by a setting.
     pub(super) fn scene_by(&self, side_px: u32, options: &str, setting: &Setting) -> Result<Scene> {
         let seen = Self::parsed(&Self::viewed(side_px, options))?;
         self.resolved_options(setting.over(&seen))
@@ -99,7 +99,7 @@ impl Dataset {
         self.colored_medium(side_px, &knots)
     }
 
-    /// As [`Dataset::medium`], each knot with a colour of its own, linear light.
+    /// A medium like [`Dataset::medium`] in which each knot has a colour of its own, in linear light.
     pub(super) fn colored_medium(
         &self,
         side_px: u32,

@@ -40,7 +40,7 @@ pub struct Journal {
     /// Locked as long as the run lasts; at its end.
     file: File,
     results: HashMap<String, Value>,
-    /// Whether there was no unfinished run here.
+    /// Whether the run is new: there was no unfinished one to resume.
     begun: bool,
 }
 
@@ -132,7 +132,7 @@ impl Journal {
             .hint("begin anew with --restart")
     }
 
-    /// Whether there was no unfinished run here.
+    /// Whether the run is new: there was no unfinished one to resume.
     pub fn is_begun(&self) -> bool {
         self.begun
     }

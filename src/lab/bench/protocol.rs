@@ -21,7 +21,7 @@ pub enum Protocol {
 impl Protocol {
     pub const ALL: [Self; 2] = [Self::Static, Self::Orbit];
 
-    /// What the user types.
+    /// The protocol's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Static => "static",
@@ -38,7 +38,7 @@ impl Protocol {
         }
     }
 
-    /// What times under it are, for the findings.
+    /// A description of times under this protocol, for the findings.
     pub(super) fn description(self, preset: Preset) -> String {
         let frames = self.frames(preset);
         let of = match self {

@@ -134,7 +134,7 @@ pub fn bound(number: u64, metric: ErrorMetric) -> Result<ErrorBound> {
     ErrorBound::new(metric, bound)
 }
 
-/// What a scene's defaults need to know of a volume.
+/// The properties of a volume from which a scene's defaults are made.
 pub fn subject(volume: &Volume) -> Subject {
     let (center_world, radius_mm) = volume.bounding_sphere();
     let range = volume.range();

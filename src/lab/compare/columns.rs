@@ -222,7 +222,7 @@ const REMARK: Column = ("remark", "remark", Shown::Short, |row| {
 /// For people, the renderer only where it is another's.
 const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into());
 
-/// What is read of a mode: of a surface its hits, of a projection its values.
+/// The columns for surfaces, which show their hits; for projections, their values.
 const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 

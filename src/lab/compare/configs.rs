@@ -8,7 +8,7 @@ use crate::options::{Part, SceneFile, SceneOptions, Setting};
 use crate::scene::Mode;
 use crate::scene::toml_error::located;
 
-/// What a file of settings says.
+/// The contents of a file of settings.
 ///
 /// ```toml
 /// [[setting]]

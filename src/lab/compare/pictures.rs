@@ -20,7 +20,7 @@ pub struct Written {
     /// The names within the folder.
     pub png: String,
     pub exr: String,
-    /// What writing the PNG took, ms.
+    /// Time to write the PNG, ms.
     pub encode_ms: f64,
 }
 

@@ -27,7 +27,7 @@ pub struct Row {
     pub note: Option<String>,
     pub error: Option<Figures>,
     pub times_ms: RowTimes,
-    /// Of the frame that is nearest to the median, in launch order.
+    /// The passes of the frame that is nearest to the median, in launch order.
     pub passes: Vec<PassMs>,
     pub counts: Option<Counts>,
     pub memory: Option<RowMemory>,
@@ -56,13 +56,13 @@ pub struct RowTimes {
     pub classify: Option<f64>,
     /// Computing and uploading precomputed gradients.
     pub gradient: Option<f64>,
-    /// What a peer does once for the scene.
+    /// Time of what a peer does once for the scene, ms.
     pub prepare: Option<f64>,
     /// Writing the PNG.
     pub encode: Option<f64>,
 }
 
-/// Of the repeats.
+/// The spread of the repeats' times.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
     pub median: f64,

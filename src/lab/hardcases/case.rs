@@ -8,7 +8,7 @@ use crate::volume::{Volume, write_nrrd, write_nrrd_of};
 /// A hard case: one volume, or several of one kind.
 #[derive(Debug)]
 pub struct HardCase {
-    /// What the user types.
+    /// The case's name, as users write it.
     pub name: &'static str,
     /// The kind of difficulty that it belongs to, 1 to 26: rays to 6, isosurface to 15,
     /// emission and absorption to 21, volumes to 26.

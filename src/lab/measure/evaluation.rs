@@ -79,7 +79,7 @@ pub fn evaluate_pixels(
     })
 }
 
-/// What one picture for display took.
+/// The time of one picture for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTime {
     /// From the camera set to pixels that the host can read, on the host's clock.

@@ -10,7 +10,7 @@ use crate::reference::{RayResult, Tracer};
 use crate::scene::{Picture, Ray, Scene};
 use crate::volume::Volume;
 
-/// What a renderer says that a ray meets first.
+/// A renderer's answer: the first thing that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     pub kind: Kind,
@@ -342,7 +342,7 @@ impl<'a> HitJudge<'a> {
     }
 }
 
-/// What the reference answers nearby, none of it the answer in question.
+/// The reference's answers nearby, not counting the answer in question.
 #[derive(Default)]
 struct Nearby {
     /// The change whose answer lies nearest before the answer in question.

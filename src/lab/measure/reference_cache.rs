@@ -38,7 +38,7 @@ struct Cache {
 /// A reference picture.
 pub struct ReferenceFrame {
     pub frame: Frame,
-    /// Whether it had to be computed.
+    /// Whether the reference had to be computed.
     pub computed: bool,
     /// Why it could not be cached for the next time.
     pub not_cached: Option<Error>,

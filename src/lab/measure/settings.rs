@@ -22,7 +22,7 @@ const RULES: [&str; 6] = [
     "romberg",
     "preintegrated",
 ];
-/// Of adaptive quadrature, in linear light.
+/// The error bounds of adaptive quadrature, in linear light.
 const BOUNDS: [&str; 4] = [
     "adaptive:1e-2",
     "adaptive:1e-3",
@@ -35,8 +35,8 @@ const TRAVERSALS: [&str; 4] = ["uniform", "kd-restart", "hierarchical", "revelle
 const EXACT: (&str, &str) = ("sampling", "exact");
 const PLAIN: (&str, &str) = ("probe", "off");
 
-/// What `compare` shows of a mode: the exact cast, fixed steps as they are by default, and plain
-/// ones as in the papers; of emission and absorption, its rules.
+/// The settings that `compare` shows of a mode: the exact cast, fixed steps as they are by default, and
+/// plain ones as in the papers; for emission and absorption, its rules.
 ///
 /// # Errors
 /// None in practice: the texts are sound.

@@ -24,7 +24,7 @@ const STYLES: [&str; 3] = [
 /// Runs before anything that could fail.
 const FAULTS: &str = include_str!("page/faults.js");
 
-/// What the scripts after it share.
+/// The scripts that those after them share.
 const SHARED: [&str; 3] = [
     include_str!("page/dom.js"),
     include_str!("page/axis.js"),

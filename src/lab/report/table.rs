@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::figure::figure;
 
-/// What stands in one place of a table; as JSON a string, a number or `null`.
+/// The contents of one cell of a table; as JSON a string, a number or `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Cell {
@@ -56,7 +56,7 @@ pub enum Shown {
     /// A share, times 100, with so many digits behind the point; one too small for them as a
     /// [`figure`].
     Percent(usize),
-    /// As a [`figure`].
+    /// Three significant digits, as [`figure`] writes them.
     Short,
 }
 
@@ -116,8 +116,8 @@ fn csv_text(text: &str) -> String {
     }
 }
 
-/// That a spreadsheet could take text for a formula, by how it begins (OWASP, CSV injection; the last
-/// four are the same signs in full width). A number is none, whatever its sign.
+/// Whether a spreadsheet could take text for a formula, by how it begins (OWASP, CSV injection; the last
+/// four are the same signs in full width). A number is not one, whatever its sign.
 fn is_formula_like(text: &str) -> bool {
     const BEGINNINGS: [char; 11] = ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
     text.starts_with(BEGINNINGS) && text.parse::<f64>().is_err()
@@ -141,7 +141,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of columns given as key, title and form.
+    /// Makes an empty table of columns given as key, title and form.
     pub fn new(columns: &[(&'static str, &'static str, Shown)]) -> Self {
         let column = |&(key, title, shown)| Column { key, title, shown };
         Self {
@@ -240,7 +240,7 @@ impl Table {
         }
     }
 
-    /// That a column has figures and no text.
+    /// Whether a column has figures and no text.
     fn is_number(&self, column: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| &row[column]);
         cells.clone().any(|cell| matches!(cell, Cell::Number(_)))

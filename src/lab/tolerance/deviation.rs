@@ -7,7 +7,7 @@ use crate::reference::{RayResult, display};
 use crate::scene::Tone;
 use crate::volume::Volume;
 
-/// What a pixel shows, as far as a metric looks at it; narrowed to the planes' single precision, as
+/// The contents of a pixel, as far as a metric uses them; narrowed to the planes' single precision, as
 /// pictures are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
@@ -17,7 +17,7 @@ pub struct Seen {
     depth: f32,
     /// Physical.
     value: f32,
-    /// Whether there is anything.
+    /// Whether the pixel shows anything.
     covered: bool,
 }
 
@@ -51,14 +51,14 @@ impl Seen {
     }
 }
 
-/// What a metric makes of all pixels.
+/// The figure that a metric computes from all pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Figure {
     /// The root of the mean.
     RootMean,
     /// The greatest.
     Greatest,
-    /// What 99 of 100 do not exceed.
+    /// The 99th percentile.
     Percentile99,
     /// The number of pixels that are off over the number of hits.
     ShareOfHits,
@@ -68,9 +68,9 @@ pub enum Figure {
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation {
     metric: ErrorMetric,
-    /// Of psnr its rmse.
+    /// The limit on the figure; for psnr, the limit on the rmse.
     limit: f64,
-    /// Of depth the smallest spacing, mm, of value the value range; else 1.
+    /// The unit of the metric: for depth the smallest spacing, mm; for value the value range; else 1.
     unit: f64,
 }
 
@@ -101,7 +101,7 @@ impl Deviation {
         })
     }
 
-    /// What the figure must not exceed.
+    /// The limit of the figure.
     pub fn limit(&self) -> f64 {
         self.limit
     }

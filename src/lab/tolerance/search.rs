@@ -30,7 +30,7 @@ const ABOUT_AS_FAST: f64 = 1.4;
 const TIMED_TOGETHER: usize = 5;
 /// Times are taken for equal within this factor.
 const EQUALLY_FAST: f64 = 1.05;
-/// What takes longer than this many times the fastest's time, each timed once, is not timed again.
+/// The multiple of the fastest's time, each timed once, beyond which a candidate is not timed again.
 const MAYBE_FASTEST: f64 = 2.0;
 /// Repeats in turn: as many as fit into so much time, within limits.
 const REPEATS: [usize; 2] = [1, 7];
@@ -60,7 +60,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// What a choice is verified by.
+/// The pictures by which a choice is verified.
 struct Verifying<'v, 'e> {
     evidence: &'v mut Evidence<'e>,
     views: &'v mut [View<'e>],
@@ -71,9 +71,9 @@ struct Verifying<'v, 'e> {
 struct Waiting {
     /// The fastest first, by their times in the small picture.
     queue: VecDeque<usize>,
-    /// Of the small picture.
+    /// The size of the small picture.
     size: ImageSize,
-    /// What takes longer than this in it is no better than the surest.
+    /// The time beyond which a candidate is no better than the surest in this picture, ms.
     slowest_ms: f64,
 }
 
@@ -302,7 +302,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(chosen)
     }
 
-    /// What the surest candidate and the reference show of a scene.
+    /// The evidence from a scene, as the surest candidate and the reference show it.
     fn evidence<'e>(&mut self, scene: &'e Scene) -> Result<Evidence<'e>>
     where
         's: 'e,

@@ -10,7 +10,7 @@ use super::{CONFIDENCE, Choice};
 pub struct ToleranceStats {
     metric: &'static str,
     bound: f64,
-    /// As flags.
+    /// The chosen setting, as flags.
     chosen: String,
     estimate: f64,
     upper: f64,

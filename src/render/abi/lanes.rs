@@ -30,8 +30,8 @@ impl Lanes {
         })
     }
 
-    /// As many as a CPU's vectors hold single-precision numbers; one on anything else, whose own
-    /// hardware puts work-items side by side.
+    /// The number of lanes for a device: as many single-precision numbers as a CPU's vectors hold; one
+    /// on anything else, whose own hardware puts work-items side by side.
     pub fn of(device: &DeviceInfo) -> Self {
         match (device.kind, device.vector_width) {
             (DeviceKind::Cpu, 16..) => Self(16),

@@ -82,7 +82,8 @@ fn layers_written(view: &View) -> Vec<Layer> {
     layers
 }
 
-/// What stands for each leaf. Where no leaf counts as homogeneous the rays are followed as without.
+/// The averages that stand for homogeneous leaves; `None` where no leaf counts as homogeneous, and rays
+/// are followed as without.
 fn node_average(run: &Run, view: &View, emission: &Emission) -> Result<Option<Buffer<f32>>> {
     if emission.homogeneity.is_none() || !view.inputs.occupancy.has_homogeneous() {
         return Ok(None);

@@ -116,7 +116,7 @@ impl<'a> Renderer<'a> {
         self.volume
     }
 
-    /// Whether the device can hold the volume in this storage.
+    /// Checks that the device can hold the volume in this storage.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of the voxels' type.

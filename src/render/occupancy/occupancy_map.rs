@@ -66,7 +66,7 @@ impl Occupancy {
         self.has_homogeneous
     }
 
-    /// Whether it holds for this criterion and sampling too.
+    /// Whether the occupancy also holds for this criterion and sampling.
     pub fn serves(&self, sampling: &Sampling, criterion: &Criterion) -> bool {
         self.criterion == *criterion
             && self.traverse == sampling.traverse

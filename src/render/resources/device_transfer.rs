@@ -6,7 +6,7 @@ use crate::scene::{Filter, QuadratureMethod};
 
 use super::transfer::Knots;
 
-/// Which tables of a transfer function a pass reads beside its knots.
+/// The tables of a transfer function that a pass reads beside its knots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tables {
     /// The integrals over the knots.

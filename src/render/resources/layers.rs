@@ -90,7 +90,7 @@ impl DeviceLayers {
         }
     }
 
-    /// As [`DeviceLayers::reading`], for a pass that writes them.
+    /// The kernel arguments of a pass that writes the layers; compare [`DeviceLayers::reading`].
     pub fn writing<'a>(&'a mut self, layers: &'a [Layer]) -> impl Group + 'a {
         self.reading(layers)
     }

@@ -216,7 +216,7 @@ impl Linear {
         [self.at_first, self.per_column, self.per_row].map(float4)
     }
 
-    /// What [`Self::float4s`] leaves out.
+    /// The low parts that [`Self::float4s`] leaves out.
     fn low_float4s(&self) -> [[f32; 4]; 3] {
         [self.at_first, self.per_column, self.per_row].map(|v| {
             let high = v.to_array().map(|c| f64::from(c as f32));

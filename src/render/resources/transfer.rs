@@ -34,7 +34,7 @@ impl Knots {
         }
     }
 
-    /// The same function with more knots, so that between any two its absorption is close to a
+    /// Returns the same function with more knots, so that between any two its absorption is close to a
     /// polynomial.
     pub fn smooth(&self) -> Self {
         let mut smooth = Self {

@@ -15,7 +15,7 @@ pub enum DeviceVoxels {
 }
 
 impl DeviceVoxels {
-    /// Whether the device can hold a volume so.
+    /// Checks that the device can hold a volume in this storage.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of the voxels' type.

@@ -30,7 +30,7 @@ impl PhantomKind {
         Self::Vessels,
     ];
 
-    /// What the user types.
+    /// The kind's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",

@@ -60,9 +60,9 @@ impl PhantomSpec {
         }
     }
 
-    /// What the field's 0 and 1 become in each voxel type: u8 0 to 200, u16 0 to 50,000, i16
-    /// −1,000 to 3,000 (as in CT, so that negative values occur), f32 0 to 1. Whole numbers are
-    /// rounded to the nearest.
+    /// The values that the field's 0 and 1 become in each voxel type: u8 0 to 200, u16 0 to 50,000, i16
+    /// −1,000 to 3,000 (as in CT, so that negative values occur), f32 0 to 1. Whole numbers are rounded
+    /// to the nearest.
     pub fn values(&self) -> Range {
         let (min, max) = match self.voxel_type {
             VoxelType::U8 => (0.0, 200.0),

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::volume::{Geometry, Rescale, Volume, VoxelBuffer, VoxelType, Voxels};
 
-/// What a header says about the voxels, whatever its format.
+/// The voxels as a header describes them, whatever its format.
 pub(super) struct Array {
     pub(super) dims: Dims,
     pub(super) frames: Frames,
@@ -51,7 +51,7 @@ impl Array {
         Ok(self.notes.into_iter().fold(volume, Volume::with_note))
     }
 
-    /// As [`Array::read`], the voxels alone.
+    /// Reads the voxels alone; compare [`Array::read`].
     pub(super) fn voxels(&mut self, payload: Payload, request: &Request) -> Result<Voxels> {
         let total = self.total_bytes()?;
         let frame_bytes = self.dims.voxels() * self.element.scalar.bytes();

@@ -63,7 +63,7 @@ impl Scalar {
         }
     }
 
-    /// Whether the file's numbers are kept as they are.
+    /// Whether the file's numbers are stored unchanged.
     pub(super) fn is_exact(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::I16 | Self::F32)
     }
@@ -116,12 +116,13 @@ impl fmt::Display for Element {
     }
 }
 
-/// What a conversion to single precision has changed.
+/// The changes that a conversion to single precision has made.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Loss {
     /// Voxels whose number differs from the file's.
     pub(super) changed: u64,
-    /// Of those, finite numbers beyond single precision's range, kept as ±3.4e38.
+    /// The number of finite numbers among them that lie beyond single precision's range and are stored
+    /// as ±3.4e38.
     pub(super) clamped: u64,
     /// The greatest difference among the others, in the file's numbers.
     pub(super) largest: f64,

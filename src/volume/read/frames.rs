@@ -16,8 +16,9 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// Of an array's sizes (the first axis fastest), `frame_axis` counts the frames; the others, at
-    /// most three, are the volume's. The note says which of several frames is read.
+    /// Chooses a frame of an array with these sizes (the first axis fastest): `frame_axis` counts the
+    /// frames; the others, at most three, are the volume's. The note says which of several frames is
+    /// read.
     ///
     /// # Errors
     /// More than three axes besides, sizes out of bounds, a frame which the file does not have.

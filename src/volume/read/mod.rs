@@ -32,10 +32,10 @@ use crate::extent::Dims;
 use crate::progress::Progress;
 use crate::volume::{NonFinite, Volume, VoxelType};
 
-/// What the user may say about reading a file.
+/// The user's options for reading a file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadOptions {
-    /// Which volume of a series (4-D) is read; 0 is the first.
+    /// The index of the volume of a series (4-D) that is read; 0 is the first.
     pub frame: u32,
     pub non_finite: NonFinite,
     pub raw: RawLayout,
@@ -49,7 +49,7 @@ struct Request<'a> {
     accept: Accept<'a>,
 }
 
-/// Whether whoever asks can do with a volume of this size, whose voxels will be held as this type.
+/// A check of whether the caller can use a volume of this size, whose voxels will be held as this type.
 pub type Accept<'a> = &'a dyn Fn(Dims, VoxelType) -> Result<()>;
 
 /// Reads a volume file: NRRD, MetaImage, NIfTI-1/2, NumPy (.npy, .npz) or headerless voxels, each
@@ -63,7 +63,8 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
     read_if(path, options, progress, &|_, _| Ok(()))
 }
 
-/// As [`read`], if `accept` accepts what the header says, which it is asked before any voxel is read.
+/// Reads a volume as [`read`] does, if `accept` accepts what the header says; it is called before any
+/// voxel is read.
 ///
 /// # Errors
 /// Those of [`read`] and of `accept`, behind the path.

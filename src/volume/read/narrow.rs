@@ -15,7 +15,7 @@ trait Wide: Pod + Send + Sync + PartialOrd {
     fn nearest(self) -> f64;
     /// `self − offset`, rounded once to double precision.
     fn above(self, offset: f64) -> f64;
-    /// What `converted`, counted from the offset, leaves of it.
+    /// The remainder that `converted`, counted from the offset, leaves.
     fn left_over(self, offset: f64, converted: f32) -> f64;
 }
 
@@ -102,15 +102,15 @@ fn narrow_from<T: Wide>(mut raw: Vec<f32>, endian: Endian) -> Converted {
     }
 }
 
-/// What decides how numbers are kept.
+/// The properties that decide how numbers are stored.
 #[derive(Debug, Clone, Copy)]
 struct Survey {
-    /// Of the finite numbers.
+    /// The minimum of the finite numbers.
     min: f64,
     max: f64,
-    /// Whether single precision holds them all as they are.
+    /// Whether single precision holds all numbers exactly.
     fits: bool,
-    /// Whether all are whole.
+    /// Whether all numbers are whole.
     whole: bool,
 }
 

@@ -255,7 +255,7 @@ impl Header {
         }
     }
 
-    /// As [`Header::qform`], by the sform ("method 3").
+    /// The orientation by the sform ("method 3"); compare [`Header::qform`].
     fn sform(&self) -> DAffine3 {
         let column = |c: usize| DVec3::new(self.srow[0][c], self.srow[1][c], self.srow[2][c]);
         DAffine3 {

@@ -13,7 +13,7 @@ use super::source::Source;
 use crate::error::{Error, Result};
 use crate::volume::Volume;
 
-/// What people call the array that is the volume, the likeliest first.
+/// Common names of the array that is the volume, the likeliest first.
 const LIKELY_NAMES: [&str; 8] = [
     "volume", "vol", "data", "image", "img", "voxels", "array", "arr_0",
 ];

@@ -14,7 +14,7 @@ pub(super) struct Axes {
     pub(super) sizes: Vec<u64>,
     /// The axis that counts frames.
     pub(super) frame_axis: Option<usize>,
-    /// Which of the header's axes are the volume's: at most three.
+    /// The header's axes that are the volume's: at most three.
     space_axes: Vec<usize>,
     /// The header's axis directions; `none` where an axis is not space.
     directions: Option<Vec<Option<Vec<f64>>>>,
@@ -38,7 +38,7 @@ fn is_spatial(direction: &[f64]) -> bool {
     direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
 }
 
-/// What each axis is, in lower case, where the header says so.
+/// The kind of each axis, in lower case, if the header gives it.
 fn kinds_of(fields: &Fields, dimension: usize) -> Result<Option<Vec<String>>> {
     let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
         kinds

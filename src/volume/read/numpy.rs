@@ -31,7 +31,7 @@ pub(super) fn is_npy(head: &[u8]) -> bool {
     head.starts_with(MAGIC)
 }
 
-/// What stands before an array's numbers.
+/// The header that precedes an array's numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Header {
     descr: String,

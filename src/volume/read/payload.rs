@@ -109,7 +109,7 @@ impl Payload {
         }
     }
 
-    /// What comes out of a decoder of `length` deflated bytes.
+    /// The output of a decoder of `length` deflated bytes.
     pub(super) fn unzipped(decoder: impl Read + 'static, length: u64) -> Self {
         Self::stream(decoder, length.saturating_mul(DEFLATE_RATIO))
     }

@@ -15,8 +15,8 @@ use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::volume::{Geometry, Rescale, Volume};
 
-/// What the user says about a headerless file (`--raw-size`, `--raw-type`, `--raw-spacing`,
-/// `--raw-offset`). Any of them makes the file a headerless one, whatever it looks like.
+/// The user's description of a headerless file (`--raw-size`, `--raw-type`, `--raw-spacing`,
+/// `--raw-offset`). Any of these options makes the file a headerless one, whatever it looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RawLayout {
     /// Voxels along x, y, z; x runs fastest in the file.
@@ -44,7 +44,7 @@ impl RawLayout {
         }
     }
 
-    /// What a name such as `head_256x256x256_uint8.raw.gz` says.
+    /// The layout that a name such as `head_256x256x256_uint8.raw.gz` describes.
     fn from_name(path: &Path) -> Self {
         let name = path
             .file_name()
@@ -219,7 +219,7 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
 /// The most bytes counted for a hint.
 const MAX_COUNTED: u64 = 1 << 28;
 
-/// What to say of a file without any description: the flags it needs, with a guess at its size.
+/// The error of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {
     let error = Error::input(
         "this is none of the formats NRRD, MetaImage, NIfTI, NumPy, and its name does not describe headerless voxels",

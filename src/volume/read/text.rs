@@ -25,7 +25,7 @@ pub(super) fn numbers<T: FromStr>(field: &str, text: &str) -> Result<Vec<T>> {
         .collect()
 }
 
-/// As [`numbers`], exactly `count` of them.
+/// Parses exactly `count` numbers; compare [`numbers`].
 pub(super) fn exactly<T: FromStr>(field: &str, text: &str, count: usize) -> Result<Vec<T>> {
     let found = numbers(field, text)?;
     if found.len() != count {

@@ -31,7 +31,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     pub rays: u64,
-    /// Of the reference.
+    /// Rays for which the reference hits something.
     pub hits: u64,
     pub missed: u64,
     pub extra: u64,

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::Target;
 use crate::lab::bench::rng::Rng;
 
-/// What a ray is aimed at.
+/// The feature of the volume at which a ray is aimed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aim {
     /// Through a voxel: the corner of eight cells.

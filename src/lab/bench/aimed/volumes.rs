@@ -93,7 +93,7 @@ pub fn target(seed: u64, n: u32) -> Result<Target> {
     })
 }
 
-/// Of all voxels, x fastest.
+/// The positions of all voxels, x fastest.
 fn positions([nx, ny, nz]: [u64; 3]) -> impl Iterator<Item = DVec3> {
     let at = |x: u64, y: u64, z: u64| DVec3::new(x as f64, y as f64, z as f64);
     (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| at(x, y, z))))

@@ -55,10 +55,10 @@ const MAX_SLOWDOWN: f64 = 1.7;
 
 /// A choice that takes at most so many times the fastest's time is near it.
 const NEAR: f64 = 1.3;
-/// Of a share that is computed from another.
+/// The rounding error of a share that is computed from another.
 const ROUNDING: f64 = 1e-9;
 
-/// Of colour differences, so tight that the grid holds every adaptive bound.
+/// A limit of colour differences so tight that the grid holds every adaptive bound.
 const ANY_LIMIT: f64 = 0.0;
 
 fn scenes(preset: Preset) -> u64 {
@@ -74,10 +74,10 @@ fn scenes(preset: Preset) -> u64 {
 struct Trial {
     mode: Mode,
     bound: ErrorBound,
-    /// Whether the choice was reported to keep the bound, and whether it does.
+    /// Whether the choice was reported to be within the bound; `kept` says whether it is.
     met: bool,
     kept: bool,
-    /// Whether its error is within the upper limit that was given.
+    /// Whether the error is within the reported upper limit.
     within: bool,
     /// Time of the chosen setting to that of the fastest that keeps the bound; where both do.
     ratio: Option<f64>,
@@ -346,7 +346,8 @@ fn table(trials: &[Trial]) -> Table {
     table
 }
 
-/// What the trials show: `met` of them are reported to keep the bound, of which `broken` do not.
+/// The findings of the trials: `met` of them are reported to be within the bound, of which `broken` are
+/// not.
 fn findings(trials: &[Trial], met: usize, broken: usize) -> Vec<String> {
     let kept = met - broken;
     let share = kept as f64 / met.max(1) as f64;
@@ -378,7 +379,7 @@ fn findings(trials: &[Trial], met: usize, broken: usize) -> Vec<String> {
     findings
 }
 
-/// What choosing costs, against how near the choice comes to the fastest.
+/// The plot of the cost of choosing against how near the choice comes to the fastest.
 fn section(trials: &[Trial]) -> Section {
     let points = trials.iter().filter_map(|trial| {
         Some(Point {

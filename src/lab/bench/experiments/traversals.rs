@@ -137,7 +137,7 @@ struct Measurement {
     times: Times,
     nodes_per_ray: f64,
     samples_per_ray: f64,
-    /// Whether the picture is the baseline's.
+    /// Whether the picture equals the baseline's.
     same: bool,
 }
 

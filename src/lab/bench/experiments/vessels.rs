@@ -330,7 +330,7 @@ fn errors<E>(
     errors.collect()
 }
 
-/// What exact casting costs, as ratios, one a volume.
+/// The cost of exact casting, as ratios, one for each volume.
 #[derive(Default)]
 struct Costs {
     iso: Vec<f64>,

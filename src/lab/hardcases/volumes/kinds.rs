@@ -146,8 +146,8 @@ const ORIENTATIONS: [&str; 48] = [
     "33", "34", "35", "36", "37", "38", "39", "40", "41", "42", "43", "44", "45", "46", "47",
 ];
 
-/// Of orientation `member`, 0 to 47: which content axis each stored axis runs along, and whether
-/// against it. Number 0 is the content as it is.
+/// The axes of orientation `member`, 0 to 47: which content axis each stored axis runs along, and
+/// whether against it. Number 0 is the content as it is.
 pub fn orientation_of(member: usize) -> ([usize; 3], [bool; 3]) {
     const ORDERS: [[usize; 3]; 6] = [
         [0, 1, 2],

@@ -54,7 +54,7 @@ pub struct PeerScene {
     pub note: Option<String>,
 }
 
-/// Whether a peer can draw a scene.
+/// The readiness of a peer to draw a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readiness {
     Ready(PeerScene),
@@ -94,7 +94,7 @@ impl Peer {
         Self::start_with_patience(command, Self::PATIENCE)
     }
 
-    /// As [`Self::start`], with another limit of the time for each answer.
+    /// Starts a peer with another time limit for each answer; see [`Self::start`].
     ///
     /// # Errors
     /// As [`Self::start`].
@@ -126,7 +126,7 @@ impl Peer {
         &self.version
     }
 
-    /// What it draws with.
+    /// The device that the peer draws with.
     pub fn device(&self) -> &str {
         &self.device
     }

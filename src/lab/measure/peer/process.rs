@@ -15,13 +15,13 @@ use crate::error::{Error, Result};
 const LONGEST_LINE_BYTES: u64 = 1 << 16;
 /// How long a peer may take to end once it is asked to, or has closed its output.
 const FAREWELL: Duration = Duration::from_secs(2);
-/// As much of a peer's words as an error quotes.
+/// The most characters of a peer's output that an error quotes.
 const QUOTED_CHARS: usize = 200;
 
 /// A running peer. Threads of its own read and write, so that neither a silent peer nor one that
 /// does not listen can hold up the caller.
 pub(super) struct Process {
-    /// What errors call it.
+    /// The peer's name in error messages.
     name: String,
     child: Child,
     /// `None` once nothing more is to be said.
@@ -69,7 +69,7 @@ impl Process {
         })
     }
 
-    /// What errors call it from now on.
+    /// Changes the peer's name in error messages.
     pub fn rename(&mut self, name: String) {
         self.name = name;
     }
@@ -138,7 +138,7 @@ impl Process {
         })
     }
 
-    /// That it closed its output: how it ended, and what it said last.
+    /// The error of a peer that closed its output: how it ended, and its last message.
     fn ended(&mut self, doing: &str) -> Error {
         let how = match self.wait(FAREWELL) {
             Some(status) => format!("ended ({status})"),
@@ -247,7 +247,7 @@ impl Complaints {
         Self { last, reader }
     }
 
-    /// Of a process that has ended: its own children may still hold the pipe.
+    /// The last line of a process that has ended: its own children may still hold the pipe.
     fn last(&self) -> Option<String> {
         let start = Instant::now();
         while !self.reader.is_finished() && start.elapsed() < FAREWELL {

@@ -41,7 +41,7 @@ pub(super) struct VolumeFile {
     pub origin: [f64; 3],
     /// The world directions of the axes x, y, z: unit vectors.
     pub direction: [[f64; 3]; 3],
-    /// Of the voxels.
+    /// Minimum and maximum of the voxels.
     pub range: [f64; 2],
 }
 
@@ -65,7 +65,7 @@ impl VolumeFile {
 /// A scene whose values are those of the voxels as stored; lengths in mm, colours in linear light.
 #[derive(Serialize)]
 pub(super) struct SceneRequest {
-    /// What the scene is called when it is to be rendered.
+    /// The number by which the scene is rendered.
     id: u64,
     setting: String,
     mode: &'static str,
@@ -306,7 +306,7 @@ pub(super) struct Loaded {
     pub loaded: f64,
 }
 
-/// That the scenes are forgotten.
+/// The answer that the scenes are forgotten.
 #[derive(Deserialize)]
 pub(super) struct Forgotten {}
 

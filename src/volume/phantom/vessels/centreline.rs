@@ -5,7 +5,7 @@ use rand_pcg::Pcg64;
 
 use super::targets::uniform_box;
 
-/// What a centreline must join.
+/// The ends that a centreline must join.
 pub(super) struct Span {
     pub start_mm: DVec3,
     pub end_mm: DVec3,

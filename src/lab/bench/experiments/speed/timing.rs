@@ -22,9 +22,9 @@ use crate::scene::{Sampling, SamplingMethod, Scene, StepVoxels, Storage};
 pub struct Taken {
     /// From the camera set to pixels that the host can read.
     pub frame_ms: f64,
-    /// Of all threads; unknown on some systems, and of some peers.
+    /// Processor time of all threads, ms; unknown on some systems, and for some peers.
     pub processor_ms: Option<f64>,
-    /// Of the pass that follows the rays, on the device's clock; unknown of peers.
+    /// Time of the pass that follows the rays, ms on the device's clock; unknown for peers.
     pub cast_ms: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ pub enum Runner {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TimedRow {
     pub runner: Runner,
-    /// What is seen; sampling alone sees nothing.
+    /// The kind of picture; `None` for sampling alone.
     pub kind: Option<PictureKind>,
     pub setting: String,
     /// Samples taken, or cells visited, in a frame from the middle of the camera's path.
@@ -335,7 +335,7 @@ fn peer_row(
     Ok(Some((row, scene)))
 }
 
-/// As many frames as take the candidates about [`seconds`] each, on average.
+/// The number of frames that take the candidates about [`seconds`] each, on average.
 fn frames_of(preset: Preset, candidates: &[Candidate], renderer: &mut Renderer) -> Result<usize> {
     let mut round_ms = 0.0;
     for candidate in candidates {

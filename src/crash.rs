@@ -6,8 +6,9 @@
 
 use std::path::Path;
 
-/// From now on SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and
-/// the exit code of a resource that failed. For the program's `main`: a library leaves signals to the program that uses it.
+/// Makes SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and the exit
+/// code of a resource that failed. For the program's `main`: a library leaves signals to the program
+/// that uses it.
 pub fn catch() {
     #[cfg(unix)]
     signals::catch();
@@ -40,7 +41,7 @@ mod signals {
     use crate::abrupt;
     use crate::error::ErrorKind;
 
-    /// With their names, each with a NUL at its end.
+    /// The signals and their names, each with a NUL at its end.
     const SIGNALS: [(c_int, &CStr); 5] = [
         (libc::SIGABRT, c"SIGABRT"),
         (libc::SIGILL, c"SIGILL"),

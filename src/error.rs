@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+/// The result of anything that can fail with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Whose fault it is; decides the process's exit code.
@@ -129,10 +130,12 @@ impl Error {
         self
     }
 
+    /// The kind of the error, which decides the exit code.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
+    /// The hint, if there is one: what the user can do.
     pub fn hint_text(&self) -> Option<&str> {
         self.hint.as_deref()
     }

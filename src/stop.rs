@@ -16,9 +16,9 @@ use crate::output::forget_unfinished;
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second ends the
-/// process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so
-/// that `nohup` keeps its meaning.
+/// Listens for signals: the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second
+/// ends the process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as
+/// it is, so that `nohup` keeps its meaning.
 ///
 /// # Errors
 /// The system lets no signals be caught.
@@ -33,8 +33,8 @@ pub fn listen(say: impl Fn(Signal) -> ErrorKind + Send + 'static) -> Result<()> 
     })
 }
 
-/// From now on a SIGINT or SIGTERM ends the process, for work that has nothing to put in order: `say` is
-/// called, and gives the exit code. Files that are not finished are removed.
+/// Lets a SIGINT or SIGTERM end the process, for work that has nothing to put in order: `say` is called,
+/// and gives the exit code. Files that are not finished are removed.
 ///
 /// # Errors
 /// The system lets no signals be caught.

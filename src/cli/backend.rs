@@ -122,13 +122,13 @@ pub enum Backend {
 pub struct Rendered {
     pub frame: Frame,
     pub device: DeviceStats,
-    /// Without reading and encoding.
+    /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
     /// Where gradients were precomputed.
     pub gradients: Option<GradientFigures>,
     pub device_bytes: u64,
-    /// From host to device.
+    /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
 }
 

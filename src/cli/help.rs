@@ -114,7 +114,7 @@ fn shortened_option(argument: Arg, command: &str, room: usize) -> Arg {
     argument.long_help(long.unwrap_or(help)).help(short)
 }
 
-/// Those that share a first column: the options under one heading, or the arguments.
+/// The arguments that share a first column: the options under one heading, or the positional arguments.
 fn group_of(argument: &Arg) -> (bool, Option<String>) {
     let heading = argument.get_help_heading().map(str::to_owned);
     (argument.is_positional(), heading)

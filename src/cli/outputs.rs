@@ -288,7 +288,7 @@ impl Layers {
         }
     }
 
-    /// Without those that the mode does not have; nothing where none is left.
+    /// Removes the layers that the mode does not have; `None` if none is left.
     fn limited_to(self, mode: Mode) -> Option<Self> {
         match self {
             Self::All => Some(Self::All),

@@ -21,7 +21,7 @@ pub struct Loaded {
     pub volume: Volume,
     pub histogram: Histogram,
     pub subject: Subject,
-    /// In the file, before smoothing.
+    /// The number of NaN and ±Inf values in the file, before smoothing.
     pub non_finite: u64,
     pub read_ms: f64,
     pub smooth_ms: f64,

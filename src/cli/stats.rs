@@ -114,7 +114,7 @@ pub struct Memory {
     pub device_bytes: u64,
     /// The part of these bytes that holds precomputed gradients.
     pub gradient_bytes: u64,
-    /// From host to device.
+    /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
 }
 

@@ -56,8 +56,8 @@ impl Frame {
         self.layers.plane_mut(key)
     }
 
-    /// Some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in this
-    /// order.
+    /// Picks some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in
+    /// this order.
     ///
     /// # Errors
     /// No pixel, or more than a row has.

@@ -16,10 +16,15 @@ const WEBP_MAX_SIDE_PX: u32 = 16_383;
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
+    /// PNG: the displayed picture without loss, and its scene.
     Png,
+    /// OpenEXR: linear light and all layers as floats, and the scene.
     Exr,
+    /// JPEG: the displayed picture, with loss.
     Jpeg,
+    /// WebP: the displayed picture, without loss.
     WebP,
+    /// NumPy's array file: linear light and all layers as floats.
     Npy,
 }
 
@@ -81,23 +86,27 @@ impl Format {
 /// Bits per channel of a PNG (`--bit-depth`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BitDepth {
+    /// 8 bits.
     Eight,
+    /// 16 bits.
     Sixteen,
 }
 
 /// How a picture is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoding {
+    /// The file format.
     pub format: Format,
     /// The bits per channel of a PNG.
     pub bit_depth: BitDepth,
     /// The quality of a JPEG, 1 (small) to 100 (good).
     pub quality: u8,
-    /// Beside the colour, in any order; EXR and NPY only.
+    /// The layers beside the colour, in any order; EXR and NPY only.
     pub layers: Vec<Layer>,
 }
 
 impl Encoding {
+    /// The quality of a JPEG if none is given.
     pub const DEFAULT_QUALITY: u8 = 92;
 
     /// `format` with its defaults: 8 bits, [`Self::DEFAULT_QUALITY`], the colour alone.

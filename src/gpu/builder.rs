@@ -40,11 +40,15 @@ const LAST_WORDS: usize = 400;
 pub struct Request {
     /// The place of the device in the list, and what is there.
     pub device: usize,
+    /// The properties of that device ([`identity`]): another one may have its place by now.
     pub identity: [String; 4],
     /// The kernel's file for messages: `kernels/<path>`.
     pub path: String,
+    /// The flattened source in OpenCL C.
     pub source: String,
+    /// The compiler's options.
     pub options: String,
+    /// The kernel's name.
     pub kernel: String,
     /// Names and types of its arguments.
     pub signature: Vec<(String, String)>,
@@ -60,17 +64,19 @@ pub fn identity(info: &DeviceInfo) -> [String; 4] {
 pub enum Answer {
     /// The driver's binary.
     Built(Vec<u8>),
-    /// No other process can build here, or the driver gives no binaries.
+    /// The kernel must be built in this process: no other can build it here, or the driver gives no
+    /// binaries.
     NotHere,
 }
 
-/// Has kernels built, one after another, by a process that is started when it is first needed.
+/// Builds kernels one after another, in a process that is started when it is first needed.
 pub struct Builders<'a> {
     arranged: &'a Arranged,
     current: Option<Builder>,
 }
 
 impl<'a> Builders<'a> {
+    /// Makes builders, of which none is started yet.
     pub fn new(arranged: &'a Arranged) -> Self {
         Self {
             arranged,
@@ -78,7 +84,7 @@ impl<'a> Builders<'a> {
         }
     }
 
-    /// Has a kernel built. Ends the process when it is time to stop, or `no_longer_wanted`.
+    /// Builds a kernel. Ends the process when it is time to stop, or `no_longer_wanted`.
     ///
     /// # Errors
     /// The kernel does not build; the driver ended the process; it is time to stop.

@@ -80,7 +80,7 @@ impl Device {
         Self::open(platform, device_id, info)
     }
 
-    /// From now on `listener` hears of kernels that are built: a stage of as many units as there are.
+    /// Reports kernels that are built to `listener` from now on: a stage of as many units as there are.
     #[must_use]
     pub fn heard_by(mut self, listener: impl Progress + Send + 'static) -> Self {
         self.listener = Box::new(listener);

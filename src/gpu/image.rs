@@ -16,12 +16,16 @@ use super::status::device_error;
 /// The content of a texel. Kernels read all of them as floats: integers as shares of their type's largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channel {
+    /// Unsigned 8-bit integers, read as 0..1.
     Unorm8,
+    /// Unsigned 16-bit integers, read as 0..1.
     Unorm16,
+    /// Single-precision floats.
     Float,
 }
 
 impl Channel {
+    /// The size of a texel in bytes.
     pub fn bytes(self) -> usize {
         match self {
             Self::Unorm8 => 1,

@@ -45,6 +45,7 @@ mod forward {
         })
     }
 
+    /// Opens an OpenCL library; if none can be opened, returns the reason.
     pub fn open() -> Result<(), String> {
         library().as_ref().map(|_| ()).map_err(Clone::clone)
     }

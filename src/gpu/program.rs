@@ -26,6 +26,7 @@ use super::{binary, source};
 pub struct Defines(Vec<(&'static str, String)>);
 
 impl Defines {
+    /// Adds a constant.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.0.push((name, value.to_string()));
@@ -49,9 +50,13 @@ impl Defines {
 
 /// A kernel that is wanted: `name` of `kernels/<path>`, which has the arguments of `signature`.
 pub(super) struct Order<'a> {
+    /// The kernel's file below `kernels`.
     pub path: String,
+    /// The kernel's name.
     pub name: &'static str,
+    /// The constants that the kernel is built with.
     pub defines: &'a Defines,
+    /// The kernel's arguments.
     pub signature: &'a [Parameter],
 }
 

@@ -61,6 +61,7 @@ impl Scratch {
         }
     }
 
+    /// The folder's path.
     pub fn path(&self) -> &Path {
         &self.path
     }

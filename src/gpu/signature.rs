@@ -11,7 +11,9 @@ use super::status::device_error;
 /// One argument of a kernel, as its Rust function gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Parameter {
+    /// The argument's name.
     pub name: &'static str,
+    /// The argument's type.
     pub of: ParameterType,
 }
 

@@ -13,7 +13,9 @@ use super::status::device_error;
 /// How long one pass ran on the device.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassTime {
+    /// The pass's name.
     pub name: &'static str,
+    /// The time in ms, on the device's clock.
     pub ms: f64,
 }
 

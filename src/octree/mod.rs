@@ -18,6 +18,7 @@ use crate::error::{Error, Result};
 pub struct Leaf(u32);
 
 impl Leaf {
+    /// The possible edges, in cells.
     pub const ALLOWED: std::ops::RangeInclusive<u32> = 4..=32;
 
     /// # Errors
@@ -77,6 +78,7 @@ pub struct Level {
 }
 
 impl Level {
+    /// The number of nodes of the level.
     pub fn nodes(&self) -> usize {
         self.size.iter().map(|&n| n as usize).product()
     }
@@ -93,22 +95,23 @@ pub struct Octree {
 }
 
 impl Octree {
+    /// The edge of the finest nodes.
     pub fn leaf(&self) -> Leaf {
         self.leaf
     }
 
-    /// Leaves first, the single root last.
+    /// The levels, leaves first, the single root last.
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
 
-    /// Minimum and maximum over every voxel that the node's cells touch.
+    /// The minimum and the maximum over every voxel that a node's cells touch, for each node.
     pub fn ranges(&self) -> &[[f32; 2]] {
         &self.ranges
     }
 
-    /// Mean of the node's own voxels: those at its cells' lower corners, and at the volume's upper
-    /// faces for the nodes that reach them. Every voxel belongs to exactly one leaf.
+    /// The mean of each node's own voxels: those at its cells' lower corners, and at the volume's upper
+    /// faces for the nodes that touch them. Every voxel belongs to exactly one leaf.
     pub fn averages(&self) -> &[f32] {
         &self.averages
     }

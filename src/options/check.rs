@@ -6,8 +6,8 @@ use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
 use crate::scene::{Mode, SamplingMethod};
 
-/// In which order needs are checked: that an option belongs to another mode says more than that something
-/// else is missing.
+/// The order in which needs are checked: that an option belongs to another mode says more than that
+/// something else is missing.
 const FIRST_NEEDS: [fn(Need) -> bool; 4] = [
     |need| need == Need::Eye,
     |need| matches!(need, Need::Modes(..)),

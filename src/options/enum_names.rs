@@ -50,7 +50,7 @@ pub enum NonFiniteRule {
     /// They are read as the smallest finite value of the volume.
     #[default]
     Replace,
-    /// Not at all: they are an error.
+    /// They are refused as an error.
     Refuse,
 }
 enum_names!(NonFiniteRule, "a rule for NaN and infinite voxels": Replace = "replace", Refuse = "refuse");

@@ -116,7 +116,7 @@ impl ErrorBound {
         self.metric
     }
 
-    /// In the metric's unit.
+    /// The bound, in the metric's unit.
     pub fn bound(self) -> f64 {
         self.bound
     }

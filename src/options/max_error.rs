@@ -75,7 +75,7 @@ impl SceneOptions {
         options
     }
 
-    /// Without what an error bound takes the place of.
+    /// Removes the options that an error bound decides.
     #[must_use]
     pub fn undecided(self) -> Self {
         self.retaining(|option| !is_decided(option))

@@ -88,7 +88,7 @@ const LMIP: &[Mode] = &[Mode::Lmip];
 const DVR: &[Mode] = &[Mode::Dvr];
 const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
 const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
-/// Those whose rays look for a crossing or an extremum, which may lie between two samples.
+/// The modes whose rays look for a crossing or an extremum, which may lie between two samples.
 const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");

@@ -40,7 +40,7 @@ enum Named {
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
     pub array: &'static str,
-    /// From 0.
+    /// The number of the part, from 0.
     pub nth: usize,
     /// Keys that are no options of a scene.
     pub without: &'static [&'static str],
@@ -73,8 +73,8 @@ impl SceneFile {
         }
     }
 
-    /// From a scene file's text; `place` names it in errors. The files that it names are relative
-    /// to the working folder.
+    /// Takes a scene file's text; `place` names it in errors. The files that it names are relative to
+    /// the working folder.
     pub fn of_text(text: &str, place: &str) -> Self {
         Self {
             text: text.to_owned(),
@@ -84,7 +84,7 @@ impl SceneFile {
         }
     }
 
-    /// From a part of a text; otherwise as [`Self::of_text`].
+    /// Takes a part of a text; otherwise like [`Self::of_text`].
     pub fn of_part(text: &str, place: &str, part: Part) -> Self {
         Self {
             part: Some(part),
@@ -227,7 +227,7 @@ impl SceneOptions {
         Ok(options)
     }
 
-    /// From the text of a scene file that says nothing but the scene; `place` names it in errors.
+    /// Parses the text of a scene file that says nothing but the scene; `place` names it in errors.
     ///
     /// # Errors
     /// Anything wrong, an unknown key too, as `place:line: …`.
@@ -235,7 +235,7 @@ impl SceneOptions {
         Self::of_whole(&SceneFile::of_text(text, place))
     }
 
-    /// From a scene file that says nothing but the scene.
+    /// Parses a scene file that says nothing but the scene.
     ///
     /// # Errors
     /// As [`Self::parse`].

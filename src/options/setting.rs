@@ -17,7 +17,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// From the text of a scene file; `name` is what tables call the setting.
+    /// Parses the text of a scene file; `name` is what tables call the setting.
     ///
     /// # Errors
     /// Usage: what the text says is wrong, or a key says what is seen rather than how.
@@ -27,7 +27,7 @@ impl Setting {
         Self::new(name, options)
     }
 
-    /// From options that say nothing but how rays are followed.
+    /// Makes a setting of options that say nothing but how rays are followed.
     ///
     /// # Errors
     /// Usage: an option says what is seen rather than how.

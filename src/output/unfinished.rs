@@ -22,7 +22,7 @@ const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 /// A file that takes its name when it is whole, and is removed when it is dropped before.
 pub(super) struct Unfinished(Option<TempPath>);
 
-/// Those of this process, and the folders that it has cleared of what others left.
+/// The unfinished files of this process, and the folders that it has cleared of what others left.
 #[derive(Default)]
 struct Known {
     live: BTreeSet<PathBuf>,

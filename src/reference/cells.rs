@@ -17,6 +17,7 @@ pub struct Lattice {
 }
 
 impl Lattice {
+    /// Makes the boxes of a volume under a reconstruction filter.
     pub fn new(dims: Dims, filter: Filter) -> Self {
         match filter {
             Filter::Linear => Self {
@@ -46,20 +47,25 @@ impl Lattice {
 /// from 0 to 1 between them.
 #[derive(Debug, Clone, Copy)]
 pub struct Segment {
+    /// Distance of its start from the interval's start, mm.
     pub from_mm: f64,
+    /// Distance of its end from the interval's start, mm.
     pub to_mm: f64,
-    /// Index-space positions of both ends; exact on the wall they lie on.
+    /// Index-space position of its start; exact on the face it lies on.
     pub p0: [f64; 3],
+    /// Index-space position of its end; exact on the face it lies on.
     pub p1: [f64; 3],
+    /// The index of the box along each axis.
     pub cell: [usize; 3],
 }
 
 impl Segment {
+    /// The length of the segment, mm.
     pub fn length_mm(&self) -> f64 {
         self.to_mm - self.from_mm
     }
 
-    /// Distance from the interval's start.
+    /// The distance from the interval's start at `s`, mm.
     pub fn at_mm(&self, s: f64) -> f64 {
         self.from_mm + self.length_mm() * s
     }
@@ -79,6 +85,7 @@ pub struct Walk {
 }
 
 impl Walk {
+    /// Starts a walk through the boxes at the interval's start.
     pub fn new(lattice: Lattice, interval: &Interval) -> Self {
         let mut walk = Self {
             lattice,

@@ -2,17 +2,17 @@
 
 use smallvec::{SmallVec, smallvec};
 
-/// By its Bézier ordinates, s from 0 to 1 along a segment: every value is a mean of them with weights
-/// from 0 to 1. So it never leaves their range, and an ordinate whose weight is small disturbs it little,
-/// however large it is.
+/// A cubic given by its Bézier ordinates, s from 0 to 1 along a segment: every value is a mean of them
+/// with weights from 0 to 1. So it never leaves their range, and an ordinate whose weight is small
+/// disturbs it little, however large it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic(pub [f64; 4]);
 
 /// Parameters in ascending order, from 0 to 1.
 pub type Parameters = SmallVec<[f64; 8]>;
 
-/// From `a` to `b`, never outside their range: from the nearer end, so that the rounding of b − a cannot
-/// carry it past the other.
+/// Interpolates from `a` to `b`, never outside their range: from the nearer end, so that the rounding of
+/// b − a cannot carry it past the other.
 fn lerp(a: f64, b: f64, t: f64) -> f64 {
     if t < 0.5 {
         a + (b - a) * t
@@ -47,7 +47,7 @@ impl Cubic {
         Self([0, 1, 2, 3].map(coefficient))
     }
 
-    /// By de Casteljau's algorithm.
+    /// Evaluates the cubic by de Casteljau's algorithm.
     pub fn at(&self, s: f64) -> f64 {
         let [a, b, c, d] = self.0;
         let [a, b, c] = [lerp(a, b, s), lerp(b, c, s), lerp(c, d, s)];

@@ -61,7 +61,9 @@ pub struct Means {
 /// How the medium's points are lit.
 #[derive(Debug, Clone, Copy)]
 pub struct Shading {
+    /// The light and the reflection.
     pub lighting: Lighting,
+    /// How gradients are computed.
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
     pub gradient_world_from_index: DMat3,
@@ -70,6 +72,7 @@ pub struct Shading {
 /// How normals are computed and turned to world space.
 #[derive(Debug, Clone, Copy)]
 pub struct Normals {
+    /// How gradients are computed.
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
     pub gradient_world_from_index: DMat3,
@@ -123,7 +126,7 @@ pub fn means<T: Voxel>(
 
 /// A quantity that is summed over a segment's points: N numbers each, weighted by κT.
 trait Points<const N: usize> {
-    /// At s of the segment, where Φ is `value` and the medium has a colour.
+    /// The numbers at s of the segment, where Φ is `value` and the medium has a colour.
     fn at(&self, s: f64, value: f64, color: [f64; 3]) -> [f64; N];
 
     /// Where these numbers are not smooth.
@@ -324,7 +327,7 @@ struct Ray<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Ray<'a, N> {
-    /// At the start of an interval. `brightest`: the most that a point's numbers are.
+    /// Starts the sums of an interval. `brightest`: the most that a point's numbers are.
     fn new(medium: &'a Medium, interval: &Interval, brightest: f64) -> Self {
         Self {
             medium,

@@ -47,6 +47,7 @@ pub struct Medium {
 }
 
 impl Medium {
+    /// Prepares a transfer function: its ramps, and the values where its absorption is not smooth.
     pub fn new(transfer: &TransferFunction) -> Self {
         let knots = transfer.knots();
         let constant = |knot: Knot| Ramp {

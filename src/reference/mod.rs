@@ -70,8 +70,8 @@ pub fn render(
     Ok(frame)
 }
 
-/// Some pixels of the picture of `scene`, by their numbers row by row: a picture of one row, whose
-/// pixels are they, in this order. Reports one unit of progress a pixel.
+/// Renders some pixels of the picture of `scene`, given by their numbers row by row: a picture of one
+/// row, whose pixels are they, in this order. Reports one unit of progress a pixel.
 ///
 /// # Errors
 /// As [`Tracer::new`]; no pixel, or more than a row has.
@@ -82,7 +82,7 @@ pub fn render_pixels(
     pixels: &[u32],
     progress: &dyn Progress,
 ) -> Result<Frame> {
-    /// Between two reports.
+    /// The number of pixels between two reports of progress.
     const AT_A_TIME: usize = 256;
     let tracer = Tracer::new(volume, scene)?.wanting(wanted);
     let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;

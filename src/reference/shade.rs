@@ -8,12 +8,14 @@ use crate::scene::{Light, Phong, Reflection};
 #[derive(Debug, Clone, Copy)]
 pub struct Lighting {
     phong: Phong,
-    /// Unit vectors, world space.
+    /// The unit vector toward the viewer, world space.
     pub to_viewer: DVec3,
+    /// The unit vector toward the light, world space.
     pub to_light: DVec3,
 }
 
 impl Lighting {
+    /// Prepares the lighting of a ray of the unit direction `dir_world`.
     pub fn new(phong: Phong, light: Light, dir_world: DVec3) -> Self {
         let to_viewer = -dir_world;
         Self {

@@ -11,7 +11,7 @@ use super::interval::{Entry, Interval};
 /// A point of the isosurface, or of a cap.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
-    /// From the interval's start.
+    /// Distance from the interval's start, mm.
     pub at_mm: f64,
     /// Φ there; with the nearest filter, of the box behind the wall.
     pub value: f64,
@@ -22,6 +22,7 @@ pub struct Crossing {
 }
 
 impl Crossing {
+    /// The kind of the hit: a surface or a cap.
     pub fn kind(&self) -> Kind {
         if self.cap.is_some() {
             Kind::Cap

@@ -27,7 +27,8 @@ const NOISE_SHARE: f64 = 1e-13;
 pub struct RayResult {
     /// Linear light, premultiplied, without background.
     pub color: [f64; 4],
-    /// mm from the ray's origin; +∞: none. Of a medium the mean, where it was asked for.
+    /// Distance from the ray's origin, mm; +∞ if it meets nothing. For a medium the mean, if it was
+    /// requested.
     pub depth_mm: f64,
     /// Unit, world space, toward lower values; 0 where there is none. Of a medium the mean's direction, where
     /// it was asked for.
@@ -36,6 +37,7 @@ pub struct RayResult {
     pub value: f64,
     /// Boxes walked.
     pub cells: u32,
+    /// The kind of thing that the ray meets.
     pub kind: Kind,
 }
 
@@ -98,7 +100,7 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// With the means of a medium that these planes need, which are integrals of their own.
+    /// Adds the means of a medium that these planes need, which are integrals of their own.
     #[must_use]
     pub fn wanting(self, wanted: Wanted) -> Self {
         Self { wanted, ..self }

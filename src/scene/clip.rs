@@ -64,7 +64,7 @@ impl ClipPlane {
         (normal / largest, height / largest)
     }
 
-    /// With n's largest component ±1: no square of it vanishes or overflows.
+    /// The plane scaled so that n's largest component is ±1: no square of it vanishes or overflows.
     fn scaled(self) -> (DVec3, f64) {
         let largest = self.normal_world.abs().max_element();
         (self.normal_world / largest, self.offset / largest)

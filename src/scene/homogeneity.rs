@@ -17,6 +17,7 @@ pub enum HomogeneityRule {
 /// Nodes taken for their average value, in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Homogeneity {
+    /// The quantity that is limited.
     pub rule: HomogeneityRule,
     /// E: the limit of the error, or of the range.
     pub limit: HomogeneityLimit,

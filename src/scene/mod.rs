@@ -53,15 +53,21 @@ use crate::subject::Subject;
 /// Everything that determines a picture of a given volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
+    /// The picture's size in pixels.
     pub size: ImageSize,
+    /// The eye and the lens.
     pub camera: Camera,
+    /// The kind of picture: a surface, a projection or a medium.
     pub picture: Picture,
-    /// At most [`ClipPlane::MAX_COUNT`]: a ray sees what lies on the kept side of all.
+    /// The clip planes, at most [`ClipPlane::MAX_COUNT`]: a ray sees what lies on the kept side of all.
     pub clip_planes: Vec<ClipPlane>,
+    /// How rays are followed.
     pub sampling: Sampling,
+    /// The light source for shading.
     pub light: Light,
     /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
+    /// The tone curve of display pictures.
     pub tone: Tone,
 }
 

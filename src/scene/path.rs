@@ -18,7 +18,7 @@ pub enum OrbitAxis {
     /// Up in the first frame's picture, at a right angle to its line of sight.
     #[default]
     Up,
-    /// To the right in the first frame's picture.
+    /// The axis points to the right in the first frame's picture.
     Right,
     /// A unit direction in world space (LPS).
     World(DVec3),
@@ -66,6 +66,7 @@ impl FrameCount {
         )))
     }
 
+    /// The number of frames.
     pub fn get(self) -> u32 {
         self.0
     }

@@ -24,6 +24,7 @@ pub struct TransferFile {
     /// The units of the points' values.
     #[serde(default)]
     pub units: TransferUnits,
+    /// The points: value, red, green, blue and opacity each, ascending in value.
     #[serde(deserialize_with = "ascending")]
     pub points: Vec<[f64; 5]>,
 }
@@ -82,7 +83,7 @@ impl TransferFile {
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// From TOML; `place` names the text in errors.
+    /// Parses TOML; `place` names the text in errors.
     ///
     /// # Errors
     /// Anything wrong, as `place:line: …`.
@@ -102,7 +103,7 @@ impl TransferFile {
         self
     }
 
-    /// In linear light, its shares taken of this range.
+    /// Converts to linear light, its shares taken of this range.
     ///
     /// # Errors
     /// As [`TransferFunction::new`].

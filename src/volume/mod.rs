@@ -40,20 +40,25 @@ use crate::extent::{Dims, Range};
 /// voxels so that they keep their type.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rescale {
+    /// The factor, positive.
     pub slope: f64,
+    /// The physical value of the stored 0.
     pub intercept: f64,
 }
 
 impl Rescale {
+    /// The calibration that changes nothing.
     pub const IDENTITY: Self = Self {
         slope: 1.0,
         intercept: 0.0,
     };
 
+    /// Converts a stored value to a physical one.
     pub fn physical(self, stored: f64) -> f64 {
         self.slope * stored + self.intercept
     }
 
+    /// Converts a physical value to a stored one.
     pub fn stored(self, physical: f64) -> f64 {
         (physical - self.intercept) / self.slope
     }
@@ -69,7 +74,7 @@ impl Rescale {
         }
     }
 
-    /// This calibration of what `inner` gives.
+    /// Combines this calibration with `inner`, which is applied first.
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
         Self {
@@ -227,9 +232,9 @@ impl Volume {
         Ok(())
     }
 
-    /// By which power of two the voxels, of `largest` magnitude, are divided: to about 1, but large ones
-    /// only so far that the smallest beside them keeps its digits. Where no power does both, differences
-    /// must not overflow, and the smallest are coarser.
+    /// The power of two by which the voxels, of `largest` magnitude, are divided: to about 1, but large
+    /// ones only so far that the smallest beside them keeps its digits. Where no power does both,
+    /// differences must not overflow, and the smallest are coarser.
     fn exponent_off(&self, largest: f64) -> f64 {
         /// A difference and its multiples below this have room.
         const MAX_EXPONENT: f64 = 120.0;
@@ -272,18 +277,22 @@ impl Volume {
         self
     }
 
+    /// The number of voxels along each axis.
     pub fn dims(&self) -> Dims {
         self.dims
     }
 
+    /// The stored voxels.
     pub fn voxels(&self) -> &Voxels {
         &self.voxels
     }
 
+    /// The spacing, origin and direction.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
+    /// The calibration from stored to physical values.
     pub fn rescale(&self) -> Rescale {
         self.rescale
     }

@@ -67,7 +67,7 @@ pub struct CompareArguments {
     device: DeviceOptions,
 }
 
-/// Those shown where none are named.
+/// The modes that are compared if none are named.
 const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
 

@@ -110,7 +110,7 @@ impl Named {
         }
     }
 
-    /// In the order in which they are named; nothing where none is.
+    /// The modes in the order in which they are named; `None` if none is.
     pub fn modes(self) -> Option<Vec<Mode>> {
         let Self(several, one) = self;
         let several = several.map(|Modes(modes)| modes);

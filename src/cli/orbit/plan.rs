@@ -19,7 +19,7 @@ use super::options::OrbitOptions;
 /// An orbit as flags and scene file request it.
 pub struct Plan {
     pub frames: FrameCount,
-    /// By which the camera turns in all.
+    /// The angle by which the camera turns in all, degrees.
     pub degrees: f64,
     pub axis: OrbitAxis,
     pub resume: bool,

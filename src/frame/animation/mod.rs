@@ -18,7 +18,7 @@ use super::Frame;
 /// An animation's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnimationFormat {
-    /// At most 256 colours a frame, repeated for ever.
+    /// GIF: at most 256 colours a frame, repeated for ever.
     Gif,
     /// Lossless, repeated for ever.
     Apng,
@@ -29,6 +29,7 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
+    /// The extensions of file names, and the format that each means.
     pub const EXTENSIONS: [(&'static str, Self); 4] = [
         ("gif", Self::Gif),
         ("apng", Self::Apng),
@@ -53,6 +54,7 @@ impl AnimationFormat {
 pub struct FrameRate(f64);
 
 impl FrameRate {
+    /// The possible rates, frames per second.
     pub const ALLOWED: std::ops::RangeInclusive<f64> = 0.01..=240.0;
 
     /// # Errors
@@ -68,6 +70,7 @@ impl FrameRate {
         Ok(Self((per_second * 100.0).round() / 100.0))
     }
 
+    /// The rate in frames per second.
     pub fn per_second(self) -> f64 {
         self.0
     }
@@ -102,14 +105,18 @@ impl fmt::Display for FrameRate {
 /// How an animation is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Animation {
+    /// The file format.
     pub format: AnimationFormat,
+    /// How fast the frames follow each other.
     pub rate: FrameRate,
 }
 
 /// The frames to come: how many, their size and their rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reel {
+    /// The size of every frame.
     pub size: ImageSize,
+    /// The number of frames, at least one.
     pub frames: u32,
 }
 

@@ -13,8 +13,11 @@ use crate::frame::Frame;
 /// three differences a pixel, each of them one entry.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ColorError {
+    /// The root mean square of the differences.
     pub rmse: f64,
+    /// The largest absolute difference.
     pub max: f64,
+    /// The 99th percentile of the absolute differences.
     pub p99: f64,
     /// −20 log₁₀ rmse: the peak is 1. +∞ for equal pictures; `null` in JSON, which has no infinity.
     #[serde(serialize_with = "null_if_infinite")]

@@ -20,10 +20,12 @@ pub enum Quantity {
     Depth,
     /// The angle between the normals, which has no sign.
     Normal,
+    /// The difference of the value planes, which is positive where the picture's value is larger.
     Value,
 }
 
 impl Quantity {
+    /// The quantity's name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Color => "colour",
@@ -64,7 +66,9 @@ impl Quantity {
 /// The error of one quantity, pixel by pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorMap {
+    /// The quantity whose error is shown.
     pub quantity: Quantity,
+    /// The size of the two pictures.
     pub size: ImageSize,
     /// Row 0 at the top, x fastest, in [`Quantity::unit`].
     pub entries: Vec<Entry>,

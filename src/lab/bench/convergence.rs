@@ -35,7 +35,7 @@ pub const ORDERS: [(QuadratureMethod, f64); 6] = [
 
 /// Below this rounding decides, in sums of few panels.
 pub const FLOOR_OF_FEW: f64 = 4e-7;
-/// And in sums of many.
+/// The rounding error of a sum of many panels.
 const FLOOR_OF_MANY: f64 = 3e-6;
 
 /// A path through one cell, and what is seen along it.

@@ -10,7 +10,7 @@ pub struct Illustration {
     pub label: String,
     /// One line that says what the picture shows.
     pub caption: String,
-    /// With its display plane.
+    /// The picture, with its display plane.
     pub frame: Frame,
 }
 

@@ -11,10 +11,10 @@ use super::Preset;
 /// `--protocol`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Protocol {
-    /// It stays where it is.
+    /// The camera stays where it is.
     #[default]
     Static,
-    /// It goes once around the volume, a frame a place.
+    /// The camera goes once around the volume, a frame a place.
     Orbit,
 }
 

@@ -20,7 +20,7 @@ impl Rng {
         (self.bits() % u64::from(n.max(1))) as u32
     }
 
-    /// In [0, 1).
+    /// A random number in [0, 1).
     pub(super) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }

@@ -102,7 +102,7 @@ impl Configs {
         Some(Mode::ALL.into_iter().filter(is_named).collect())
     }
 
-    /// Those for a mode, in the file's order.
+    /// The settings for a mode, in the file's order.
     pub fn of_mode(&self, mode: Mode) -> Vec<Setting> {
         let suits = |config: &&Config| {
             let modes = config.modes.as_ref();

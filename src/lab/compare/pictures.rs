@@ -45,7 +45,7 @@ pub fn write(folder: &Folder, name: &str, frame: &Frame, metadata: &Metadata) ->
     })
 }
 
-/// Those whose planes are there.
+/// The layers whose planes are there.
 fn layers_of(frame: &Frame) -> Vec<Layer> {
     frame.layers.iter().map(|(layer, _)| layer).collect()
 }

@@ -23,7 +23,7 @@ pub struct Row {
     pub family: String,
     /// Why there is no picture.
     pub failure: Option<String>,
-    /// In what a peer shows something else than the scene says.
+    /// How a peer's picture differs from what the scene says.
     pub note: Option<String>,
     pub error: Option<Figures>,
     pub times_ms: RowTimes,
@@ -33,7 +33,7 @@ pub struct Row {
     pub memory: Option<RowMemory>,
     /// The keys of the errors by which the setting is on the Pareto front of its mode.
     pub on_front: Vec<&'static str>,
-    /// Beside the results.
+    /// The row's files beside the results.
     pub files: Option<RowFiles>,
 }
 
@@ -41,12 +41,12 @@ pub struct Row {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct RowTimes {
     pub repeats: usize,
-    /// From the camera set to pixels that the host can read.
+    /// The time from the camera set to pixels that the host can read, ms.
     pub frame: Option<Spread>,
     /// The processor time of all threads of the program that drew it, the median; unknown on some
     /// systems.
     pub processor: Option<f64>,
-    /// From the first launch to the last one's end, on the device's clock.
+    /// The time from the first launch to the last one's end, ms on the device's clock.
     pub render: Option<Spread>,
     /// Uploading the volume: with the first picture of all, then 0.
     pub upload: Option<f64>,
@@ -93,8 +93,8 @@ pub struct RowMemory {
     /// The most that the process held, the rows before this one included; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
-    /// From host to device for this picture; with the first one of all (which may be one that an error
-    /// bound was chosen by), the volume too.
+    /// The bytes uploaded from host to device for this picture; with the first one of all (which may be
+    /// one that an error bound was chosen by), the volume too.
     pub uploaded_bytes: u64,
 }
 

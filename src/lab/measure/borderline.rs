@@ -61,7 +61,7 @@ pub struct Borderline<'a> {
 }
 
 impl<'a> Borderline<'a> {
-    /// For pictures of `scene`.
+    /// Prepares the comparison of pictures of `scene`.
     ///
     /// # Errors
     /// As [`HitJudge::new`].

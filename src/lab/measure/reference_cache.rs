@@ -45,7 +45,7 @@ pub struct ReferenceFrame {
 }
 
 impl<'a> ReferenceCache<'a> {
-    /// Without a folder: every picture is computed.
+    /// A cache without a folder: every picture is computed.
     pub fn uncached(volume: &'a Volume) -> Self {
         Self {
             volume,

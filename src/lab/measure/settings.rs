@@ -29,7 +29,7 @@ const BOUNDS: [&str; 4] = [
     "adaptive:1e-4",
     "adaptive:1e-5",
 ];
-/// Beside the default one.
+/// The traversals beside the default one.
 const TRAVERSALS: [&str; 4] = ["uniform", "kd-restart", "hierarchical", "revelles"];
 
 const EXACT: (&str, &str) = ("sampling", "exact");

@@ -31,7 +31,7 @@ const SHARED: [&str; 3] = [
     include_str!("page/magnified.js"),
 ];
 
-/// In the order in which they run, each with names of its own.
+/// The scripts in the order in which they run, each with names of its own.
 const SCRIPTS: [&str; 5] = [
     include_str!("page/viewer.js"),
     include_str!("page/pairs.js"),

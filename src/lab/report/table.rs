@@ -51,7 +51,7 @@ impl<T: Into<Self>> From<Option<T>> for Cell {
 /// How a column's numbers are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
-    /// With so many digits behind the point.
+    /// A fixed number of digits behind the point.
     Fixed(usize),
     /// A share, times 100, with so many digits behind the point; one too small for them as a
     /// [`figure`].
@@ -167,7 +167,7 @@ impl Table {
         &self.rows
     }
 
-    /// For reading, a line of Markdown each; numbers rounded as their columns say.
+    /// The table for reading, a line of Markdown each; numbers rounded as their columns say.
     pub fn markdown(&self) -> Vec<String> {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             let cells = cells.map(|cell| format!(" {cell} |"));
@@ -200,8 +200,8 @@ impl Table {
         named.collect()
     }
 
-    /// For a page, about `what`, under so many plots with a front; rounded like [`Self::markdown`],
-    /// with the unrounded figures to sort by and, as CSV, to take along.
+    /// The table for a page, about `what`, under so many plots with a front; rounded like
+    /// [`Self::markdown`], with the unrounded figures to sort by and, as CSV, to take along.
     pub(super) fn html(&self, what: &str, plots: usize) -> Markup {
         let on_front = match plots {
             0 => "on a Pareto front",

@@ -59,7 +59,7 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
-    /// From the device's surest picture of a scene; with its certificate, where it has one.
+    /// Takes the device's surest picture of a scene; with its certificate, if it has one.
     ///
     /// # Errors
     /// As [`Tracer::new`].

@@ -98,7 +98,7 @@ pub struct Verified {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     pub setting: Setting,
-    /// In the size it was last timed in; of those within the bound.
+    /// The time in the size it was last timed in, ms; of candidates within the bound.
     pub ms: Option<f64>,
     /// The error as last measured, in the metric's unit; infinite for a missed hit's depth.
     pub error: f64,

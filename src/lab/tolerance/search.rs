@@ -26,7 +26,7 @@ const SCREEN_SLACK: f64 = 1.2;
 /// Candidates up to this many times as slow as the fastest that keeps the bound are timed beside
 /// it: times of small pictures are not those of large ones.
 const ABOUT_AS_FAST: f64 = 1.4;
-/// At most so many of them.
+/// The most candidates that are timed together.
 const TIMED_TOGETHER: usize = 5;
 /// Times are taken for equal within this factor.
 const EQUALLY_FAST: f64 = 1.05;
@@ -188,8 +188,8 @@ impl<'s, 'a> Search<'s, 'a> {
         self.candidates[at].ms.unwrap_or(f64::INFINITY)
     }
 
-    /// In place of one that failed, the next finer one of its chain waits; unless it is slower than
-    /// the surest.
+    /// Queues the next finer candidate of the chain of one that failed, unless it is slower than the
+    /// surest.
     fn refine(&mut self, failed: usize, waiting: &mut Waiting) -> Result<()> {
         let finer = failed + 1;
         if self.candidates[failed].is_finest || self.candidates[finer].ms.is_some() {

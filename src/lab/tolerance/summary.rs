@@ -50,7 +50,7 @@ impl fmt::Display for Choice {
     }
 }
 
-/// To three digits: more would not be known.
+/// Rounds to three digits, as no more are known.
 fn rounded(figure: f64) -> f64 {
     format!("{figure:.2e}").parse().unwrap_or(figure)
 }

@@ -24,6 +24,7 @@ pub struct OpacityRanges<'a> {
 const BINS: usize = 4096;
 
 impl<'a> OpacityRanges<'a> {
+    /// Prepares a transfer function for queries of ranges.
     pub fn new(knots: &'a Knots) -> Self {
         let count = knots.values.len();
         let width = f64::from(knots.values[count - 1]) - f64::from(knots.values[0]);
@@ -101,7 +102,7 @@ impl<'a> OpacityRanges<'a> {
         join(ends, join(row[inside], row[end - (1 << level)]))
     }
 
-    /// At a value with `after` knots at or below it.
+    /// The channels at a value with `after` knots at or below it.
     fn at(&self, value: f32, after: usize) -> [f32; 4] {
         let colors = &self.knots.colors;
         if after == 0 || after == colors.len() {

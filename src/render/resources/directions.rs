@@ -35,7 +35,7 @@ pub struct AngleError {
     pub mean_deg: f64,
     /// The angle that 99 of 100 places do not exceed.
     pub p99_deg: f64,
-    /// At how many places it was measured.
+    /// The number of places at which it was measured.
     pub places: usize,
 }
 
@@ -213,7 +213,7 @@ fn trilinear(volume: &Volume, p: [f64; 3]) -> f64 {
     sum
 }
 
-/// Between two directions; 90° where one of them is none.
+/// The angle between two directions; 90° if one of them is zero.
 fn angle_deg(a: DVec3, b: DVec3) -> f64 {
     let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
     a.cross(b)

@@ -73,9 +73,9 @@ pub fn needed_gradients(scene: &Scene, wanted: Wanted) -> Option<Precomputed> {
 /// How a pass finds gradients: by a constant, and where directions are read, their arguments.
 #[derive(Clone, Copy)]
 pub enum DeviceGradient<'a> {
-    /// By differences of the field, of this kind.
+    /// Gradients by differences of the field, of this kind.
     Differences(Gradient),
-    /// From directions that were computed before.
+    /// Gradients from directions that were computed before.
     Directions(&'a DeviceDirections),
 }
 

@@ -69,7 +69,7 @@ impl RaySource {
         }
     }
 
-    /// Those of a camera's rays that go through these pixels, counted row by row. Work-items follow
+    /// The rays of a camera that go through these pixels, counted row by row. Work-items follow
     /// neighbours together, in whatever order they are listed.
     ///
     /// # Errors

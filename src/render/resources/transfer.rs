@@ -13,8 +13,8 @@ pub struct Knots {
     pub colors: Vec<[f32; 4]>,
 }
 
-/// Between two smooth knots 1 − opacity changes by this factor at most (`SMOOTH_PARTS` of the constants follows from it),
-/// so that three Gauss points integrate its logarithm within 1e-6 of itself.
+/// The factor by which 1 − opacity changes at most between two smooth knots (`SMOOTH_PARTS` of the
+/// constants follows from it), so that three Gauss points integrate its logarithm within 1e-6 of itself.
 const SMOOTH_RATIO: f64 = 1.5;
 
 impl Knots {

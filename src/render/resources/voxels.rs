@@ -10,7 +10,9 @@ use crate::volume::{Volume, VoxelType};
 
 /// The voxels of a volume on the device, in stored units, x fastest.
 pub enum DeviceVoxels {
+    /// The voxels in a buffer, in their own type.
     Buffer(AnyBuffer),
+    /// The voxels in a three-dimensional image.
     Image(Image),
 }
 

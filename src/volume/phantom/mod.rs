@@ -21,6 +21,7 @@ use crate::volume::{Geometry, NonFinite, Rescale, Volume};
 /// A phantom and what is known about it.
 #[derive(Debug)]
 pub struct Phantom {
+    /// The volume itself.
     pub volume: Volume,
     /// Centrelines and radii, of [`PhantomKind::Vessels`] only.
     pub tree: Option<VesselTree>,

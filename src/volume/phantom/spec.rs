@@ -12,10 +12,13 @@ use crate::volume::VoxelType;
 /// voxel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhantomSpec {
+    /// What the volume contains.
     pub kind: PhantomKind,
+    /// The number of voxels along each axis.
     pub dims: Dims,
-    /// Each 1e-6 to 1e6.
+    /// The distance of voxel centres along each axis, mm: each 1e-6 to 1e6.
     pub spacing_mm: DVec3,
+    /// The type of the voxels.
     pub voxel_type: VoxelType,
     /// Decides the vessel tree and every noise.
     pub seed: u64,

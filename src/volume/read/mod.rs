@@ -37,7 +37,9 @@ use crate::volume::{NonFinite, Volume, VoxelType};
 pub struct ReadOptions {
     /// The index of the volume of a series (4-D) that is read; 0 is the first.
     pub frame: u32,
+    /// The treatment of NaN and ±Inf voxels.
     pub non_finite: NonFinite,
+    /// The layout of a headerless file.
     pub raw: RawLayout,
 }
 

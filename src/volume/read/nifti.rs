@@ -310,8 +310,8 @@ impl Header {
         })
     }
 
-    /// In mm, LPS: the sform where it is set and spans space, else the qform, else the voxel sizes
-    /// alone with axes along the world's (as ITK does).
+    /// The geometry in mm, LPS: the sform if it is set and spans space, else the qform, else the voxel
+    /// sizes alone with axes along the world's (as ITK does).
     fn geometry(&self, notes: &mut Vec<String>) -> Result<Geometry> {
         let unit_mm = match self.units & 7 {
             1 => 1000.0,

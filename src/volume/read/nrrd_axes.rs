@@ -10,7 +10,7 @@ use crate::volume::Geometry;
 
 /// The array's axes, the first fastest.
 pub(super) struct Axes {
-    /// Without axes of one entry that are not space.
+    /// The sizes, without axes of one entry that are not space.
     pub(super) sizes: Vec<u64>,
     /// The axis that counts frames.
     pub(super) frame_axis: Option<usize>,
@@ -33,7 +33,7 @@ fn is_domain(kind: &str) -> bool {
     matches!(kind, "domain" | "space" | "???" | "none" | "unknown")
 }
 
-/// With four components the last is time, and a direction in it alone leads nowhere in space.
+/// Whether a direction leads anywhere in space. With four components the last is time.
 fn is_spatial(direction: &[f64]) -> bool {
     direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
 }

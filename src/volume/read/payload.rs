@@ -42,7 +42,7 @@ impl MappedBytes {
         (self.end - self.start) as u64
     }
 
-    /// Without the first `skip` bytes; fails when there are fewer.
+    /// Skips the first `skip` bytes; fails when there are fewer.
     pub(super) fn after(mut self, skip: u64) -> Result<Self> {
         if skip > self.len() {
             return Err(Error::input(format!(
@@ -169,7 +169,7 @@ impl Payload {
         Self::stream(HexBytes(reader), length)
     }
 
-    /// Without the first `count` bytes.
+    /// Skips the first `count` bytes.
     ///
     /// # Errors
     /// There are fewer, or they are damaged.
@@ -202,7 +202,7 @@ impl Payload {
         }
     }
 
-    /// Without the first `count` lines.
+    /// Skips the first `count` lines.
     pub(super) fn skip_lines(self, count: u64) -> Result<Self> {
         let missing =
             |line| Error::input(format!("{count} lines to skip, but the data have {line}"));

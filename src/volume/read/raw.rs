@@ -64,6 +64,7 @@ impl RawLayout {
 pub struct RawSize(Dims);
 
 impl RawSize {
+    /// The sizes, in voxels.
     pub fn dims(self) -> Dims {
         self.0
     }

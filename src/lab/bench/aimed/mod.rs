@@ -73,7 +73,7 @@ impl Tally {
 pub struct Report {
     /// One an aim, in the order of [`Aim::ALL`].
     pub tallies: [Tally; Aim::ALL.len()],
-    /// For finding the fault: target number, ray, answer, verdict.
+    /// Details of wrong answers, for finding the fault: target number, ray, answer, verdict.
     pub wrong: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Report {
         self.tallies.into_iter().fold(Tally::default(), Tally::add)
     }
 
-    /// This report and that of `later` rays.
+    /// Combines this report with that of `later` rays.
     #[must_use]
     pub fn and(mut self, later: Self) -> Self {
         for (of, tally) in self.tallies.iter_mut().zip(later.tallies) {

@@ -16,7 +16,7 @@ pub enum Aim {
     Corner,
     /// Through a cell's edge, or along it.
     Edge,
-    /// In the plane of cell faces.
+    /// A point in the plane of cell faces.
     InFace,
     /// Along an axis, on lines of the grid or a hair beside.
     GridLine,
@@ -218,8 +218,8 @@ impl Aimer<'_> {
         (origin, dir)
     }
 
-    /// At right angles to the gradient at a point of the surface, moved off it by 0 or 1e-6 to 1e-2
-    /// voxel; any ray where the target has no surface nearby.
+    /// A ray at right angles to the gradient at a point of the surface, moved off it by 0 or 1e-6 to
+    /// 1e-2 voxel; any ray where the target has no surface nearby.
     fn tangent(&mut self) -> (DVec3, DVec3) {
         let Some((at, gradient)) = self.surface() else {
             let at = self.inside();

@@ -50,8 +50,8 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
 /// The errors and counters of a setting's picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct PictureError {
-    /// In the order of [`RankingMetric::of_mode`], unscaled; the first of every mode is a share, or a
-    /// colour's of 0 to 1.
+    /// The errors in the order of [`RankingMetric::of_mode`], unscaled; the first of every mode is a
+    /// share, or a colour's of 0 to 1.
     errors: Vec<Option<f64>>,
     samples_per_ray: f64,
     nodes_per_ray: f64,

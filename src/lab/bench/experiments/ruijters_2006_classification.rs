@@ -56,7 +56,7 @@ struct Changed {
     what: String,
     traverse: String,
     times: Times,
-    /// With the volume's first frame, and with it the volume.
+    /// The bytes uploaded with the volume's first frame, the volume included.
     first_bytes: u64,
     /// The most of any change.
     uploaded_bytes: u64,

@@ -26,8 +26,8 @@ fn edges(preset: Preset) -> &'static [u32] {
     }
 }
 
-/// Not the distance map, whose leaves know how far around them nothing is: the paper's octree has
-/// levels.
+/// The traversal that is measured. Not the distance map, whose leaves know how far around them nothing
+/// is: the paper's octree has levels.
 const TRAVERSE: Traverse = Traverse::KdRestart;
 
 fn run(bench: &Bench) -> Result<Outcome> {

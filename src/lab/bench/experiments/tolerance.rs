@@ -83,7 +83,7 @@ struct Trial {
     ratio: Option<f64>,
     choosing_ms: f64,
     rays: u64,
-    /// For the user, where the bound is not kept.
+    /// A sentence for the user, if the bound is broken.
     story: String,
 }
 

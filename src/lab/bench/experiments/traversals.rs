@@ -141,7 +141,7 @@ struct Measurement {
     same: bool,
 }
 
-/// In the order of [`Traverse::ALL`].
+/// Measures the traversals in the order of [`Traverse::ALL`].
 fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<Measurement>> {
     let scenes = Traverse::ALL.map(|traverse| by(scene, traverse));
     let frames: Vec<Frame> = scenes

@@ -40,7 +40,7 @@ const TYPES: [&str; 11] = [
 /// 9 x 8 x 7 voxels of noise over the whole range of a type, both its ends among them.
 fn typed(member: usize) -> Result<HardVolume> {
     const DIMS: [u64; 3] = [9, 8, 7];
-    /// From `low` to `high`, which the volume's first two voxels are.
+    /// Values from `low` to `high`, which the volume's first two voxels are.
     fn spread(low: f64, high: f64) -> impl Fn(DVec3) -> f64 {
         move |p| match [p.x, p.y, p.z] {
             [0.0, 0.0, 0.0] => low,

@@ -50,7 +50,7 @@ pub struct PeerScene {
     tone: Tone,
     /// The time of what is done once for the scene, such as extracting a mesh.
     pub ready_ms: f64,
-    /// In what its picture differs from what the scene says, other than by sampling.
+    /// How its picture differs from what the scene says, other than by sampling.
     pub note: Option<String>,
 }
 
@@ -58,7 +58,7 @@ pub struct PeerScene {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readiness {
     Ready(PeerScene),
-    /// It cannot draw such a scene.
+    /// The peer cannot draw such a scene.
     Unsupported {
         why: String,
     },
@@ -156,7 +156,7 @@ impl Peer {
         self.duration(loaded.loaded)
     }
 
-    /// Has it prepare a scene of `volume`, which is the one loaded last, in one of its
+    /// Requests that the peer prepare a scene of `volume`, which is the one loaded last, in one of its
     /// [`Self::settings`].
     ///
     /// # Errors

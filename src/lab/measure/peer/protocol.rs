@@ -227,7 +227,7 @@ impl PhongRequest {
 #[derive(Serialize)]
 pub(super) struct RenderRequest {
     pub id: u64,
-    /// In place of the scene's; of pictures that are only timed.
+    /// The camera in place of the scene's, for pictures that are only timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraRequest>,
     /// R, G, B, A: linear light, premultiplied, without background.
@@ -319,7 +319,7 @@ pub(super) struct Ready {
     /// Why it is not supported.
     #[serde(default, deserialize_with = "optional_line")]
     pub why: Option<String>,
-    /// In what its picture differs from the scene's.
+    /// How its picture differs from the scene's.
     #[serde(default, deserialize_with = "optional_line")]
     pub note: Option<String>,
 }

@@ -48,7 +48,7 @@ struct Piece {
 }
 
 impl Piece {
-    /// From the piece's nearest point to `p_mm`.
+    /// The vector from the piece's nearest point to `p_mm`.
     fn offset(&self, p_mm: DVec3) -> DVec3 {
         let q = p_mm - self.from_mm;
         let length_squared = self.along_mm.length_squared();

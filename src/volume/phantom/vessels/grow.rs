@@ -102,7 +102,7 @@ struct Grower {
     tip_mm: f64,
     voxel_mm: f64,
     half_mm: DVec3,
-    /// Those that have no segment yet.
+    /// The buds, which have no segment yet.
     buds: Vec<Bud>,
     segments: Vec<VesselSegment>,
 }

@@ -8,7 +8,9 @@ use rand_pcg::Pcg64;
 /// tip. By Murray's law a vessel's radius is the cube root of the flow it carries.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
+    /// The tip's place, mm from the volume's centre.
     pub p_mm: DVec3,
+    /// The flow that the tip takes, in flows of the finest tip.
     pub flow: f64,
 }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::extent::Dims;
 
-/// In `r0^n = r1^n + r2^n`.
+/// The exponent n of `r0^n = r1^n + r2^n`.
 pub const MURRAY_EXPONENT: f64 = 3.0;
 
 /// A vessel from one branching to the next (or to a tip). World space, mm; the radius is the same
@@ -23,13 +23,17 @@ pub struct VesselSegment {
     pub parent: Option<usize>,
     /// Branchings between the root and here.
     pub generation: u32,
+    /// The radius, mm.
     pub radius_mm: f64,
-    /// In voxels of the smallest spacing.
+    /// The radius, in voxels of the smallest spacing.
     pub radius_voxels: f64,
+    /// The start of the centreline.
     pub start_mm: [f64; 3],
+    /// The end of the centreline.
     pub end_mm: [f64; 3],
-    /// The centreline's unit tangents at both ends; at a branching they obey Murray's angles.
+    /// The centreline's unit tangent at the start; at a branching it obeys Murray's angles.
     pub start_direction: [f64; 3],
+    /// The centreline's unit tangent at the end; at a branching it obeys Murray's angles.
     pub end_direction: [f64; 3],
     /// The centreline: a polyline from start to end, both included. What the voxels show is the
     /// tube around exactly this polyline.
@@ -39,10 +43,15 @@ pub struct VesselSegment {
 /// All segments, a parent before its branches. Each has no branches or two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VesselTree {
+    /// The number of voxels along each axis.
     pub dims: Dims,
+    /// The distance of voxel centres along each axis, mm.
     pub spacing_mm: [f64; 3],
+    /// The seed that the tree was grown from.
     pub seed: u64,
+    /// The exponent of Murray's law ([`MURRAY_EXPONENT`]).
     pub murray_exponent: f64,
+    /// The segments; a segment's `id` is its index.
     pub segments: Vec<VesselSegment>,
 }
 

@@ -32,7 +32,7 @@ const SUREST: &str = "adaptive:0.001";
 pub struct Medium {
     shaded: bool,
     quadrature: String,
-    /// Without meaning where the rule takes no steps.
+    /// The step in voxels, without meaning if the rule takes no steps.
     step_voxels: f64,
     /// The error in the pixels that were checked when it was chosen.
     color_max: f64,

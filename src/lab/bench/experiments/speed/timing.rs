@@ -20,7 +20,7 @@ use crate::scene::{Sampling, SamplingMethod, Scene, StepVoxels, Storage};
 /// The times of one frame, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Taken {
-    /// From the camera set to pixels that the host can read.
+    /// The time from the camera set to pixels that the host can read, ms.
     pub frame_ms: f64,
     /// Processor time of all threads, ms; unknown on some systems, and for some peers.
     pub processor_ms: Option<f64>,
@@ -48,7 +48,7 @@ pub struct TimedRow {
     /// Samples taken, or cells visited, in a frame from the middle of the camera's path.
     pub samples: Option<u64>,
     pub error: Option<PictureError>,
-    /// In what a peer's picture differs otherwise.
+    /// How a peer's picture differs otherwise.
     pub note: Option<String>,
     /// A round each.
     pub taken: Vec<Taken>,
@@ -98,7 +98,8 @@ pub struct Lineup<'a> {
     pub peer: Option<&'a mut Peer>,
 }
 
-/// Between two frames the camera turns by so much: no two frames see the same cells in the same pixels.
+/// The angle by which the camera turns between two frames: no two frames see the same cells in the same
+/// pixels.
 pub const TURN_DEG: f64 = 1.7;
 
 /// The settings of a peer that are timed, the first that it has for a mode; else its first.

@@ -48,6 +48,8 @@ impl JobArguments {
         self.scene.open()
     }
 
+    /// Lays these flags over a scene file's options.
+    ///
     /// # Errors
     /// Options that contradict each other or an error bound, a transfer function that cannot be read, no volume.
     pub fn over(self, file: &SceneFile) -> Result<Job> {

@@ -117,6 +117,8 @@ impl OutputOptions {
         self.encoding(Path::new("frame.png"), mode)
     }
 
+    /// Resolves the options to the files that a picture of this mode is written to.
+    ///
     /// # Errors
     /// As [`OutputOptions::path`] and [`OutputOptions::encoding`].
     pub fn files(self, mode: Mode) -> Result<Files> {

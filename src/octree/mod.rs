@@ -21,6 +21,8 @@ impl Leaf {
     /// The possible edges, in cells.
     pub const ALLOWED: std::ops::RangeInclusive<u32> = 4..=32;
 
+    /// Makes a leaf of this edge, in cells.
+    ///
     /// # Errors
     /// An edge outside [`Leaf::ALLOWED`].
     pub fn new(edge: u32) -> Result<Self> {

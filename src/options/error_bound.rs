@@ -99,6 +99,8 @@ pub struct ErrorBound {
 }
 
 impl ErrorBound {
+    /// Makes a bound of a metric.
+    ///
     /// # Errors
     /// A bound that the metric cannot have.
     pub fn new(metric: ErrorMetric, bound: f64) -> Result<Self> {
@@ -129,6 +131,8 @@ impl ErrorBound {
         }
     }
 
+    /// Checks that pictures of this mode have such an error.
+    ///
     /// # Errors
     /// Usage: pictures of the mode have no such error.
     pub fn check(self, mode: Mode) -> Result<()> {

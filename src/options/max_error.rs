@@ -39,6 +39,8 @@ impl ToleranceOptions {
         }
     }
 
+    /// Checks that the bound goes with the other options.
+    ///
     /// # Errors
     /// Usage: a bound that the mode has no metric for, or beside options of which it takes the
     /// place.

@@ -47,6 +47,8 @@ pub struct Part {
 }
 
 impl SceneFile {
+    /// Reads a scene file.
+    ///
     /// # Errors
     /// An unreadable file, one that is no text.
     pub fn read(path: &Path) -> Result<Self> {

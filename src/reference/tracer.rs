@@ -67,6 +67,8 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
+    /// Prepares a volume and a scene for casting rays.
+    ///
     /// # Errors
     /// The volume's spacing is too small for double precision.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {

@@ -20,6 +20,8 @@ impl ClipPlane {
     /// The maximum number of planes of a scene.
     pub const MAX_COUNT: usize = 64;
 
+    /// Makes a half-space of a normal of any length and an offset, mm times the normal's length.
+    ///
     /// # Errors
     /// A normal without direction; a number that is not finite.
     pub fn new(normal_world: DVec3, offset: f64) -> Result<Self> {

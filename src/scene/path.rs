@@ -54,6 +54,8 @@ impl FrameCount {
     /// Nine hours at 30 a second.
     pub const MAX: u32 = 1_000_000;
 
+    /// Makes a number of frames.
+    ///
     /// # Errors
     /// No frames, or more than [`Self::MAX`] (usage).
     pub fn new(frames: u32) -> Result<Self> {

@@ -149,6 +149,8 @@ pub struct Window {
 }
 
 impl Window {
+    /// Makes a window from the values shown as black and as white.
+    ///
     /// # Errors
     /// The ends are the same value, or either is beyond single precision.
     pub fn new(black: f64, white: f64) -> Result<Self> {

@@ -98,6 +98,8 @@ impl Named {
         Self(compare.modes.take(), options.picture.mode.take())
     }
 
+    /// Checks that these two options do not contradict each other.
+    ///
     /// # Errors
     /// Usage: both, and not the same.
     pub fn check(&self) -> Result<()> {

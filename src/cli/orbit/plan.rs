@@ -33,6 +33,8 @@ pub struct Plan {
 impl Plan {
     const DEFAULT_DEGREES: f64 = 360.0;
 
+    /// Checks the options and plans the orbit.
+    ///
     /// # Errors
     /// Options that are missing or contradict each other, files that cannot be written or are read.
     pub fn of(options: OrbitOptions, job: &Job) -> Result<Self> {

@@ -57,6 +57,8 @@ impl FrameRate {
     /// The possible rates, frames per second.
     pub const ALLOWED: std::ops::RangeInclusive<f64> = 0.01..=240.0;
 
+    /// Makes a rate, rounded to hundredths.
+    ///
     /// # Errors
     /// Outside [`FrameRate::ALLOWED`] (usage).
     pub fn new(per_second: f64) -> Result<Self> {

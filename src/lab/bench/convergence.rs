@@ -78,7 +78,7 @@ impl Smooth {
     /// The field is the share of the path.
     ///
     /// # Errors
-    /// None in practice, as of the others: the volumes are sound.
+    /// The volume is refused, as it is if there is no memory for it.
     pub fn ramp() -> Result<Self> {
         Self::new("ramp", |n| (n & 1) as f32, DVec3::X, |s| s)
     }

@@ -126,7 +126,7 @@ impl Dataset {
     /// directions.
     ///
     /// # Errors
-    /// None in practice: the volume is sound.
+    /// The volume is refused, as it is if there is no memory for it.
     pub(super) fn straight_vessels(radius: f64, n: usize) -> Result<Self> {
         const SIDE: u64 = 64;
         const SEED: u64 = 7;
@@ -232,6 +232,8 @@ impl Dataset {
         )
     }
 
+    /// Checks that the dataset can be measured.
+    ///
     /// # Errors
     /// Usage: all voxels are equal, so that there is nothing to measure.
     pub fn check(&self) -> Result<()> {

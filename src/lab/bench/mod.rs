@@ -284,6 +284,8 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// Finds an experiment by its name.
+    ///
     /// # Errors
     /// Usage: there is no such experiment; the error lists all.
     pub fn named(name: &str) -> Result<&'static Self> {

@@ -75,7 +75,7 @@ pub fn error_map(
 /// then equal errors, and neither the best nor the worst setting makes the others look all alike.
 ///
 /// # Errors
-/// None in practice: their own scales are positive and finite.
+/// A map's own scale is not positive and finite, which [`ErrorMap`] rules out.
 pub fn to_one_scale(maps: Vec<ErrorMap>) -> Result<Vec<ErrorMap>> {
     let scales: Vec<(Quantity, f64)> = maps.iter().map(|map| (map.quantity, map.scale)).collect();
     let common = |quantity| {

@@ -62,6 +62,8 @@ impl<'a> HitJudge<'a> {
     /// value range: what single precision leaves of a field's value.
     pub const NEAR_VALUE: f64 = 2e-6;
 
+    /// Prepares the reference for a scene.
+    ///
     /// # Errors
     /// As [`Tracer::new`].
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {

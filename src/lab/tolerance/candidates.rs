@@ -25,7 +25,7 @@ pub type Chain = Vec<Setting>;
 /// bounds that by itself keeps `limit`, a difference of displayed colours 0..1.
 ///
 /// # Errors
-/// None in practice: the texts are sound.
+/// A text of this module does not parse, which tests rule out.
 pub fn candidates(mode: Mode, limit: f64) -> Result<Vec<Chain>> {
     let mut chains: Vec<Vec<String>> = Vec::new();
     let mut by_step = |how: &str| {

@@ -75,6 +75,8 @@ pub struct Deviation {
 }
 
 impl Deviation {
+    /// Prepares the metric of a bound for a volume.
+    ///
     /// # Errors
     /// All voxels are equal, so that no value can be a share of their range.
     pub fn new(bound: ErrorBound, volume: &Volume) -> Result<Self> {

@@ -86,6 +86,8 @@ pub struct Search<'s, 'a> {
 }
 
 impl<'s, 'a> Search<'s, 'a> {
+    /// Prepares the search for a setting.
+    ///
     /// # Errors
     /// Usage: the mode has no such metric, the options contradict each other.
     pub fn new(task: &'s Task<'s>, renderer: &'s mut Renderer<'a>) -> Result<Self> {
@@ -109,6 +111,8 @@ impl<'s, 'a> Search<'s, 'a> {
         })
     }
 
+    /// Searches for the cheapest setting that meets the bound.
+    ///
     /// # Errors
     /// The device fails.
     pub fn run(mut self) -> Result<Choice> {

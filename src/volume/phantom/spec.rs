@@ -100,6 +100,8 @@ impl PhantomSpec {
         DVec3::from_array(self.dims.array().map(|n| f64::from(n - 1) / 2.0))
     }
 
+    /// Checks the numbers that a user may give.
+    ///
     /// # Errors
     /// Usage: a length that is not positive, an absurd spacing, a negative noise, an axis beyond 2,
     /// a shape parameter that the kind does not have, more voxels than a phantom may have.

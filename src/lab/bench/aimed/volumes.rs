@@ -23,7 +23,7 @@ const KINDS: u32 = 5;
 /// one, signed floats, thin vessels in turn. Sides of 2 to 15 voxels, now and then 32.
 ///
 /// # Errors
-/// None in practice: the volumes are sound.
+/// The volume is refused, as it is if there is no memory for it.
 pub fn target(seed: u64, n: u32) -> Result<Target> {
     let mut rng = Rng::new(seed ^ (u64::from(n) << 32 | 0x7a61));
     let longest = if rng.one_in(12) { 32 } else { 15 };

@@ -67,7 +67,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     } else {
         Err(io::Error::new(
             io::ErrorKind::InvalidData,
-            "this is no regular file",
+            "not a regular file",
         ))
     }
 }

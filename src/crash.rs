@@ -120,7 +120,7 @@ mod signals {
         };
         let hint = match (removed, while_.is_empty()) {
             (true, _) => {
-                "hint: the kept kernels that were in use are removed: the same command builds them again\n"
+                "hint: the cached kernels that were in use are removed; the same command builds them again\n"
             }
             (false, false) => {
                 "hint: its driver failed, or memory ran out; '--device reference' needs no driver\n"

@@ -43,7 +43,7 @@ pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
         )));
     }
     if bytes.is_empty() && !is_file {
-        return Err(refused("it is empty, or nobody writes into it".into()));
+        return Err(refused("it is empty, or nothing writes to it".into()));
     }
     Ok(bytes)
 }

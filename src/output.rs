@@ -195,7 +195,7 @@ fn refusal(folder: &Path, cause: &io::Error) -> String {
     let folder_name = folder.display();
     match cause.kind() {
         io::ErrorKind::NotFound if !folder.exists() => {
-            format!("there is no folder '{folder_name}'")
+            format!("the folder '{folder_name}' does not exist")
         }
         io::ErrorKind::NotFound => format!("the folder '{folder_name}' takes no files"),
         io::ErrorKind::NotADirectory => format!("'{folder_name}' is not a folder"),

@@ -126,7 +126,7 @@ impl ShardChoice {
         }
         let ranks = RANKS.map(|(index, count)| format!("{index} and {count}"));
         Err(Error::usage(
-            "shard auto: nothing in the environment says which of how many processes this is",
+            "shard auto: the environment does not say which process this is, and of how many",
         )
         .hint(format!(
             "start it by sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",

@@ -261,7 +261,7 @@ impl BenchOptions {
         };
         Err(match need {
             Need::TimedFrames => Error::usage(format!(
-                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
+                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera by itself"
             )),
             Need::Volumes => Error::usage(format!("'--{option}' has no effect without a volume"))
                 .hint("name the volumes that it is meant for"),

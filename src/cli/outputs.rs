@@ -314,7 +314,7 @@ impl FromStr for Layers {
             Layer::ALL.into_iter().find(is_it).ok_or_else(|| {
                 let names = Layer::ALL.map(Layer::name).join(", ");
                 Error::usage(format!(
-                    "'{name}' is no layer: write all, or some of {names} with commas between"
+                    "'{name}' is not a layer: write all, or some of {names} separated by commas"
                 ))
             })
         });

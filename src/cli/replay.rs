@@ -53,7 +53,7 @@ group! {
         #[arg(value_name = "IMAGE")]
         image: FilePath,
 
-        /// The volume, where it lies elsewhere than the picture says; its content must be the same
+        /// The volume, if it is not where the picture says; its content must be the same
         #[arg(long, value_name = "FILE")]
         volume: FilePath,
     }
@@ -180,11 +180,11 @@ fn found(
     if there.is_empty() {
         let places: Vec<&PathBuf> = places.iter().collect();
         return Err(Error::input(format!(
-            "{}: its volume is not there; looked for {}",
+            "{}: its volume was not found; looked for {}",
             carried.picture.display(),
             shown(&places)
         ))
-        .hint("say where it is by --volume FILE"));
+        .hint("give its place with --volume FILE"));
     }
     for (at, place) in there.iter().enumerate() {
         let mut volume = options.volume.clone();
@@ -196,7 +196,9 @@ fn found(
             Ok(loaded) => loaded,
         };
         let Some(content) = &carried.content else {
-            note("the picture does not say what its volume's content was: it is taken as it is");
+            note(
+                "the picture does not record its volume's content, which is therefore not checked",
+            );
             return Ok((source, loaded));
         };
         if *content == loaded.content() {
@@ -208,7 +210,7 @@ fn found(
         shown(&there),
         carried.picture.display()
     ))
-    .hint("say where that is by --volume FILE"))
+    .hint("give that file's place with --volume FILE"))
 }
 
 /// Says so where another version of the program made the picture.

@@ -56,7 +56,7 @@ impl Format {
             Some(extension) => {
                 format!("'.{extension}' is not a picture format that can be written")
             }
-            None => "the name has no extension that says the picture's format".to_owned(),
+            None => "the name has no extension that gives the picture's format".to_owned(),
         };
         let names: Vec<_> = EXTENSIONS
             .iter()

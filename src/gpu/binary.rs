@@ -52,7 +52,7 @@ impl Binaries {
             }),
             None => {
                 let Some(folder) = cache::user_folder() else {
-                    return Ok(Self::not_cached("there is no cache folder of this user"));
+                    return Ok(Self::not_cached("this user has no cache folder"));
                 };
                 Ok(Self::in_folder(&folder).unwrap_or_else(Self::not_cached))
             }

@@ -110,8 +110,10 @@ impl SceneOptions {
                 self.picture.gradient_method()
             ))
             .hint("it belongs to gradient precomputed"),
-            Need::Eye => Error::usage("'up' goes with 'eye' alone: a view has an up of its own")
-                .hint("'roll' turns a view about its line of sight"),
+            Need::Eye => {
+                Error::usage("'up' can only be given with 'eye': a view has an up of its own")
+                    .hint("'roll' turns a view about its line of sight")
+            }
             Need::Homogeneity => Error::usage(format!(
                 "'homogeneity-rule' {} has no effect without 'homogeneity', its limit",
                 self.picture.homogeneity_rule.unwrap_or_default()

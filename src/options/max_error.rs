@@ -63,7 +63,7 @@ impl ToleranceOptions {
             return Err(Error::usage(
                 "'max-error' and 'voxels' = filtered exclude each other: a bound may choose exact sampling, which solves the field from the voxels themselves",
             )
-            .hint("leave one of both out, or say --voxels image"));
+            .hint("leave one of the two out, or use --voxels image"));
         }
         bound.check(scene.mode())
     }

@@ -94,7 +94,7 @@ const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");
 const NORMALS: Need = Need::Modes(LIT, "a projection has no normals");
 const AVERAGED: Need = Need::Modes(DVR, "only dvr takes a node for its average");
-const SPARSE: Need = Need::Precomputed("only precomputed gradients are kept at every N-th voxel");
+const SPARSE: Need = Need::Precomputed("only precomputed gradients are stored at every N-th voxel");
 const SMOOTHED: Need = Need::Precomputed(
     "only precomputed gradients are smoothed by themselves; 'smooth' is for the volume",
 );

@@ -124,7 +124,7 @@ impl SceneFile {
         };
         let name = stray.get_ref();
         let at = format!("{}:{}", self.place, line(&self.text, stray.span().start));
-        let error = Error::usage(format!("'{name}' is no option of a scene")).at(at);
+        let error = Error::usage(format!("'{name}' is not an option of a scene")).at(at);
         let wanted = name.replace('_', "-");
         if is_known(&wanted) {
             return Err(error.hint(format!("write '{wanted}'")));

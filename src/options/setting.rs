@@ -37,10 +37,10 @@ impl Setting {
         match options.given().iter().find(what) {
             None => Ok(Self { name, options }),
             Some(option) => Err(Error::usage(format!(
-                "setting '{name}': '{option}' says what is seen, not how its rays are followed"
+                "setting '{name}': '{option}' changes what is shown, not how rays are followed"
             ))
             .hint(format!(
-                "a setting may say {}",
+                "a setting may give {}",
                 deciding(|decides| decides != Decides::What)
                     .collect::<Vec<_>>()
                     .join(", ")

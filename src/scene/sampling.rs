@@ -73,13 +73,13 @@ impl Storage {
             return Err(Error::usage(
                 "'voxels' = filtered does not go with exact sampling, which solves the field from the voxels themselves",
             )
-            .hint("say --sampling fixed, in dvr a --quad of fixed steps; or --voxels image"));
+            .hint("use --sampling fixed, in dvr a --quad of fixed steps; or --voxels image"));
         }
         if filter == Filter::Nearest {
             return Err(Error::usage(
                 "'voxels' = filtered does not go with 'filter' = nearest, which takes voxels as they are",
             )
-            .hint("leave one of both out, or say --voxels image"));
+            .hint("leave one of the two out, or use --voxels image"));
         }
         Ok(())
     }
@@ -167,7 +167,7 @@ impl FromStr for Refine {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::usage(format!(
-                "'{text}' is not a refiner: :N is for 1 to {} iterations, and none has none",
+                "'{text}' is not a refiner: :N gives 1 to {} iterations; 'none' takes no :N",
                 Self::MAX_ITERATIONS
             ))
         };

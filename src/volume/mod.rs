@@ -204,8 +204,9 @@ impl Volume {
             min: -self.stored_range.max,
             max: -self.stored_range.min,
         };
-        self.notes
-            .push("the calibration slope is negative: the voxels are kept negated, as f32".into());
+        self.notes.push(
+            "the calibration slope is negative: the voxels are stored negated, as f32".into(),
+        );
         Ok(())
     }
 

@@ -71,10 +71,7 @@ fn wrong_usage_says_what_there_is() {
         ("bench b1 --iso 3", "no effect without a volume"),
         ("bench b1 ball.nrrd --iso 3x", "not a value"),
         ("bench rays --protocol orbit", "times no frames"),
-        (
-            "bench speed --protocol orbit",
-            "moves the camera in its own way",
-        ),
+        ("bench speed --protocol orbit", "moves the camera by itself"),
         ("bench b1 --protocol still", "not a protocol"),
         ("bench b1 --restart", "no effect without '--output'"),
     ] {

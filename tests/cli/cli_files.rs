@@ -208,7 +208,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(65), "{said}");
     assert!(
-        said.contains("its volume is not there") && said.contains("--volume"),
+        said.contains("its volume was not found") && said.contains("--volume"),
         "{said}"
     );
     done("far", "replay ../moved/a.png -o b.png");

@@ -22,7 +22,7 @@ fn texts_without_an_end_are_refused() {
     for (file, word) in [
         ("/dev/zero", "1024 KiB"),
         ("long.toml", "1024 KiB"),
-        ("pipe", "writes into it"),
+        ("pipe", "writes to it"),
     ] {
         for line in [
             format!("render ball.nrrd -o a.png --scene {file} {REFERENCE}"),

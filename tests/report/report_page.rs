@@ -836,7 +836,7 @@ fn what_is_no_picture_is_refused() {
     wrong[2].png = b"GIF89a".to_vec();
     report.sections[0].gallery = Some(gallery(wrong));
     let error = report.html().unwrap_err().to_string();
-    assert!(error.contains("\"step 2\" is no PNG"), "{error}");
+    assert!(error.contains("\"step 2\" is not a PNG"), "{error}");
 
     let mut twice = pictures(&mut report);
     twice[2] = twice[0].clone();

@@ -348,7 +348,7 @@ fn nonsense_is_refused_with_a_reason() {
         ("eye = [1, 2, 3]\nview = 'left'", "exclude each other"),
         ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "exclude each other"),
         ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
-        ("up = [0, 1, 0]", "'up' goes with 'eye'"),
+        ("up = [0, 1, 0]", "'up' can only be given with 'eye'"),
         ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
         let said = refusal(text);
@@ -375,7 +375,7 @@ fn a_wrong_scene_file_is_refused_with_its_line() {
         ("mode = 'mip'\n\nwindow = 'x'", "scene.toml:3: "),
         (
             "size = 9\nmood = 'dark'",
-            "scene.toml:2: 'mood' is no option",
+            "scene.toml:2: 'mood' is not an option",
         ),
         ("raw_size = '4x4x4'", "scene.toml:1: 'raw_size'"),
         ("step = 0", "scene.toml:1: "),

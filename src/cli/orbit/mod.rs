@@ -26,7 +26,7 @@ use runner::{OrbitOutcome, OrbitRunner};
 #[command(override_usage = "angioray orbit VOLUME -o FRAMES --frames N [OPTIONS]")]
 #[command(mut_arg("output", |output| output.value_name("FRAMES").help(
     "The frames: pictures by a name with their number's place (frames/%04d.png, .jpg, .webp, .exr, .npy; \
-     a folder is made where there is none), or one animation: .gif, .apng (lossless), .mp4 and .webm (by ffmpeg)"
+     the folder is created if it does not exist), or one animation: .gif, .apng (lossless), .mp4 and .webm (by ffmpeg)"
 )))]
 #[command(after_help = "Example:
   angioray orbit head.nrrd -o head.mp4 --frames 120

@@ -95,7 +95,7 @@ impl Plan {
             }
             _ if self.resume && !self.destination.recognises_finished() => {
                 return Err(Error::usage(format!(
-                    "{}: such files do not say what scene they are of: '--resume' does not go with them",
+                    "{}: such files do not record their scene, so '--resume' cannot be used with them",
                     job.output.path()?.display()
                 ))
                 .hint("write .png, .exr or an animation"));

@@ -219,7 +219,7 @@ impl OrbitRunner<'_> {
                     "{report} and saved in {}; {path} is written when all are",
                     frames.folder().display()
                 ),
-                None => format!("{report}, and {path} has none of them"),
+                None => format!("{report}, and none of them is in {path}"),
             };
         }
         if self.plan.ended_early() != ErrorKind::Stopped {

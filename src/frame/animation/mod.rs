@@ -176,7 +176,7 @@ impl Animation {
             }?;
             if count.get() < reel.frames {
                 return Err(Error::failed(format!(
-                    "{}: {} of {} frames came",
+                    "{}: {} of {} frames were given",
                     path.display(),
                     count.get(),
                     reel.frames

@@ -50,7 +50,7 @@ impl Configs {
             .map_err(|error: toml::de::Error| located(&error, text, place).hint(HINT))?;
         let wrong = |sentence: String| Error::usage(sentence).hint(HINT).at(place);
         if let Some(key) = table.keys().find(|key| *key != "setting") {
-            return Err(wrong(format!("'{key}' is no part of a file of settings")));
+            return Err(wrong(format!("'{key}' is not a key of a file of settings")));
         }
         let Some(toml::Value::Array(entries)) = table.get("setting") else {
             return Err(wrong("there is no [[setting]]".into()));
@@ -64,7 +64,7 @@ impl Configs {
         let mut settings: Vec<Config> = Vec::new();
         for (at, entry) in entries.iter().enumerate() {
             let toml::Value::Table(entry) = entry else {
-                return Err(wrong(format!("setting {} is no table", at + 1)));
+                return Err(wrong(format!("setting {} is not a table", at + 1)));
             };
             let name = name_of(entry, at + 1).map_err(|error| error.at(place))?;
             if settings.iter().any(|other| other.setting.name() == name) {

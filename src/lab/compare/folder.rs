@@ -117,7 +117,7 @@ impl Folder {
     /// The disk.
     pub(super) fn write_results(&self, about: &Value, known: &Compared) -> Result<()> {
         let mut document = about.clone();
-        let json = |cause| Error::failed(format!("the results are no JSON: {cause}"));
+        let json = |cause| Error::failed(format!("the results are not JSON: {cause}"));
         document["scenes"] = serde_json::to_value(&known.scenes).map_err(json)?;
         document["max_error"] = serde_json::to_value(&known.choices).map_err(json)?;
         document["findings"] = serde_json::to_value(&known.findings).map_err(json)?;

@@ -78,7 +78,7 @@ impl HardCase {
     pub fn volume(&self, member: usize) -> Result<HardVolume> {
         if member >= self.count() {
             return Err(Error::usage(format!(
-                "the hard case {} has {} volumes, there is no number {member}",
+                "the hard case {} has {} volumes, so there is no number {member}",
                 self.name,
                 self.count()
             )));

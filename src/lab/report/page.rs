@@ -107,7 +107,7 @@ impl Report {
                 div.intro {
                     @if !self.findings.is_empty() {
                         section.card.findings {
-                            h2 { "What came out" }
+                            h2 { "Findings" }
                             ul { @for finding in &self.findings { li { (finding) } } }
                         }
                     }

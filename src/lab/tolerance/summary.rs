@@ -25,7 +25,7 @@ impl fmt::Display for Choice {
         let outcome = if self.met {
             format!("chose {}", setting.flags())
         } else {
-            format!("nothing keeps it, {} is used", setting.flags())
+            format!("nothing meets it, {} is used", setting.flags())
         };
         let views = match verified.views {
             1 => String::new(),

@@ -50,11 +50,13 @@ impl Frames {
         let chosen = u64::from(frame);
         if chosen >= count {
             return Err(if count == 1 {
-                Error::usage(format!("frame {chosen} asked for, the file has one volume"))
-                    .hint("leave --frame away")
+                Error::usage(format!(
+                    "frame {chosen} was requested, but the file has one volume"
+                ))
+                .hint("leave --frame away")
             } else {
                 Error::usage(format!(
-                    "frame {chosen} asked for, the file has frames 0 to {}",
+                    "frame {chosen} was requested, but the file has frames 0 to {}",
                     count - 1
                 ))
             });

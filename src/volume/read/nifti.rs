@@ -227,7 +227,7 @@ impl Header {
             return sizes;
         }
         notes.push(format!(
-            "the voxel size {sizes} is taken as 1 where it is no length"
+            "the voxel size {sizes} is taken as 1 where it is not a length"
         ));
         DVec3::from_array(
             sizes
@@ -422,7 +422,7 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
         let source = Source::open(header)?;
         if !is_nifti(source.head()) {
             return Err(Error::input(
-                "is no NIfTI header (of such pairs, Analyze 7.5 is not read)",
+                "is not a NIfTI header (of such pairs, Analyze 7.5 is not supported)",
             ));
         }
         let request = Request {

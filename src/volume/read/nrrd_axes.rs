@@ -217,7 +217,7 @@ fn first_three(field: &str, vector: &[f64]) -> Result<DVec3> {
 
 /// `(1,0,0) none (0, 1, 0)`.
 fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
-    let wrong = || Error::input(format!("the NRRD header's '{text}' are no vectors"));
+    let wrong = || Error::input(format!("the NRRD header's '{text}' are not vectors"));
     let mut found = Vec::new();
     let mut rest = text.trim();
     while !rest.is_empty() {

@@ -65,7 +65,7 @@ impl Header {
         let mut start = [0; 8];
         reader.read_exact(&mut start).map_err(cut_off)?;
         if !start.starts_with(MAGIC) {
-            return Err(Error::input("this is no .npy array"));
+            return Err(Error::input("not a .npy array"));
         }
         let length = match start[6] {
             1 => {

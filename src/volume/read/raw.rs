@@ -223,7 +223,7 @@ const MAX_COUNTED: u64 = 1 << 28;
 /// The error of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {
     let error = Error::input(
-        "this is none of the formats NRRD, MetaImage, NIfTI, NumPy, and its name does not describe headerless voxels",
+        "not in the format NRRD, MetaImage, NIfTI or NumPy, and its name does not describe headerless voxels",
     );
     let flags = "for headerless voxels give --raw-size NXxNYxNZ and --raw-type (u8, i16, f32, …)";
     let guess = match source.decoded_len(MAX_COUNTED) {

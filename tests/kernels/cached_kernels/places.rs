@@ -41,7 +41,7 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
     };
     for nowhere in [&file, &file.join("below")] {
         let printed = done(&place, &mut homeless(nowhere));
-        let note = printed.lines().find(|line| line.contains("not kept"));
+        let note = printed.lines().find(|line| line.contains("not cached"));
         let note = note.unwrap_or_else(|| panic!("{printed}"));
         assert!(
             note.starts_with("note: ") && note.contains("ANGIORAY_KERNEL_CACHE"),
@@ -53,7 +53,7 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
     // The control: where there is a folder nothing is said, and kernels are cached in it.
     let cache = place.path("cache");
     let printed = done(&place, &mut homeless(&cache));
-    assert!(!printed.contains("not kept"), "{printed}");
+    assert!(!printed.contains("not cached"), "{printed}");
     assert!(fs::read_dir(cache.join("angioray")).unwrap().count() > 0);
 }
 

@@ -24,7 +24,7 @@ use crate::volume::Volume;
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "tolerance",
-    about: "whether what --max-error chooses keeps its bound in random scenes, and how near it \
+    about: "whether what --max-error chooses meets its bound in random scenes, and how near it \
             comes to the fastest setting that does",
     takes_volumes: false,
     counts_rays: false,
@@ -37,10 +37,14 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
     ("mode", "mode", Shown::Short),
     ("metric", "metric", Shown::Short),
     ("scenes", "scenes", Shown::Fixed(0)),
-    ("met", "reported kept", Shown::Fixed(0)),
+    ("met", "reported within bound", Shown::Fixed(0)),
     ("kept", "kept", Shown::Fixed(0)),
     ("within", "within the limit given", Shown::Fixed(0)),
-    ("in_vain", "kept though reported not", Shown::Fixed(0)),
+    (
+        "in_vain",
+        "within bound though reported not",
+        Shown::Fixed(0),
+    ),
     ("ratio_median", "time to the best, median", Shown::Fixed(2)),
     ("ratio_p95", "p95", Shown::Fixed(2)),
     ("choosing_ms", "choosing ms, median", Shown::Fixed(0)),
@@ -300,7 +304,7 @@ fn outcome(trials: &[Trial], repeats: usize, device: &str) -> Outcome {
         sections: vec![section(trials)],
         failure: (broken as f64 > max_broken * (1.0 + ROUNDING)).then(|| {
             format!(
-                "{broken} of {met} choices break the bound that they were reported to keep: more than {:.0} %",
+                "{broken} of {met} choices break the bound that they were reported to meet: more than {:.0} %",
                 100.0 * (1.0 - CONFIDENCE)
             )
         }),
@@ -352,7 +356,7 @@ fn findings(trials: &[Trial], met: usize, broken: usize) -> Vec<String> {
     let kept = met - broken;
     let share = kept as f64 / met.max(1) as f64;
     let mut findings = vec![format!(
-        "of {} random scenes {met} have a setting that is reported to keep the bound; in {kept} of \
+        "of {} random scenes {met} have a setting that is reported to meet the bound; in {kept} of \
              them ({:.1} %) the whole picture of the reference agrees",
         trials.len(),
         100.0 * share
@@ -442,7 +446,7 @@ mod tests {
         assert!(failure.starts_with("2 of 100 choices"), "{failure}");
         assert!(failure.ends_with("more than 1 %"), "{failure}");
 
-        // Where nothing was reported kept, nothing is broken.
+        // Where nothing was reported within bound, nothing is broken.
         let mut unmet = trials(3, 0);
         for trial in &mut unmet {
             (trial.met, trial.ratio) = (false, None);

@@ -42,7 +42,7 @@ impl Process {
         let words = shlex::split(command).filter(|words| !words.is_empty());
         let Some(words) = words else {
             return Err(Error::usage(format!(
-                "the peer '{command}' is no command: give a program and its arguments, quoted as in a shell"
+                "the peer '{command}' is not a command: give a program and its arguments, quoted as in a shell"
             )));
         };
         let name = format!("the peer '{command}'");
@@ -110,7 +110,9 @@ impl Process {
         if let Some(request) = request {
             match self.replies.try_recv() {
                 Ok(line) => {
-                    return Err(self.failed(&format!("said '{}' unasked", quotable(&line))));
+                    return Err(
+                        self.failed(&format!("sent '{}' without a request", quotable(&line)))
+                    );
                 }
                 Err(TryRecvError::Disconnected) => return Err(self.ended(doing)),
                 Err(TryRecvError::Empty) => {}
@@ -132,7 +134,7 @@ impl Process {
         };
         serde_json::from_str(&line).map_err(|_| {
             self.failed(&format!(
-                "was to {doing} and said '{}', which is no JSON object",
+                "was to {doing} and answered '{}', which is not a JSON object",
                 quotable(&line)
             ))
         })

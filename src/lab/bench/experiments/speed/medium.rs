@@ -68,9 +68,9 @@ impl Medium {
     /// A sentence for the findings.
     pub fn finding(&self, volume: &str) -> String {
         let why = match self.color_max <= BOUND {
-            true => "the fastest of those tried that keep an error of 0.784 % (2 of 255)",
+            true => "the fastest of those tried that stay within an error of 0.784 % (2 of 255)",
             false => {
-                "none of those tried keeps an error of 0.784 % (2 of 255), this one comes nearest"
+                "none of those tried stays within an error of 0.784 % (2 of 255), this one comes nearest"
             }
         };
         format!(

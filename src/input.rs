@@ -38,7 +38,7 @@ pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
         .map_err(failed)?;
     if bytes.len() as u64 > LONGEST_TEXT {
         return Err(refused(format!(
-            "it is longer than {} KiB, the most that is read of a text",
+            "it is longer than {} KiB, the most that is read from a text file",
             LONGEST_TEXT >> 10
         )));
     }

@@ -114,7 +114,7 @@ fn refused(bytes: usize) {
         b"error: out of memory: ",
         abrupt::decimal(bytes, &mut digits),
         b" bytes more were requested and refused\n",
-        b"hint: give the program more memory, or it less to do: a smaller picture or volume\n",
+        b"hint: give the program more memory, or choose a smaller picture or volume\n",
     ];
     abrupt::end(&last_words, ErrorKind::Resource.exit_code())
 }

@@ -129,7 +129,7 @@ impl ShardChoice {
             "shard auto: the environment does not say which process this is, and of how many",
         )
         .hint(format!(
-            "start it by sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",
+            "start it with sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",
             ranks.join(", or ")
         )))
     }

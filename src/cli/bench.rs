@@ -281,7 +281,7 @@ impl BenchOptions {
     fn preset(&self) -> Result<Preset> {
         match (is_on(self.quick), is_on(self.full)) {
             (true, true) => {
-                Err(Error::usage("'quick' and 'full' do not go together")
+                Err(Error::usage("'quick' and 'full' cannot be combined")
                     .hint("choose one of them"))
             }
             (true, false) => Ok(Preset::Quick),

@@ -49,7 +49,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("replay", "volume", "The volume, if it is not where the picture says"),
     ("orbit", "output", "Pictures such as frames/%04d.png, or .gif .apng .mp4 .webm"),
     ("orbit", "resume", "Keep existing frames, make the missing ones"),
-    ("orbit", "axis", "What it turns about, through the target [default: up]"),
+    ("orbit", "axis", "The axis of rotation, through the target [default: up]"),
     ("compare", "output", "A folder for the report, the tables and the pictures"),
     ("compare", "configs", "Settings to compare in place of the built-in ones"),
     ("bench", "output", "A folder for the table and the report"),
@@ -93,7 +93,7 @@ fn shortened(command: Command, name: &str) -> Command {
     if let Some(example) = first_example(&whole) {
         short.push_str(&format!("Example:\n  {example}\n\n"));
     }
-    short.push_str(&format!("All of it: {name} --help"));
+    short.push_str(&format!("Full help: {name} --help"));
     command.after_help(short).after_long_help(whole)
 }
 

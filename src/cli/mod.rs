@@ -180,7 +180,7 @@ fn misused(stop: &clap::Error) -> Error {
     let message = message.join(" ");
     let error = Error::usage(message.strip_prefix("error: ").unwrap_or(&message));
     if hints.is_empty() {
-        error.hint("--help lists what there is")
+        error.hint("--help lists them")
     } else {
         error.hint(hints.join("; "))
     }

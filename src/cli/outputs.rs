@@ -282,7 +282,7 @@ impl Layers {
             Self::Named(layers) => match layers.iter().find(|layer| !Self::is_of(**layer, mode)) {
                 None => Ok(layers.clone()),
                 Some(stray) => Err(Error::usage(format!(
-                    "the layer '{}' does not go with mode '{mode}': only a surface is proven to be hit or missed",
+                    "the layer '{}' cannot be combined with mode '{mode}': only a surface is proven to be hit or missed",
                     stray.name()
                 ))
                 .hint("leave it out, or write all for every layer that the mode has")),

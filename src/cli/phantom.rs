@@ -151,7 +151,7 @@ impl PhantomOptions {
     fn output_file(&self) -> Result<PathBuf> {
         let Some(FilePath(output)) = self.output.clone() else {
             return Err(Error::usage("no file to write was named")
-                .hint("give it by '--output', or as 'output' in the scene file"));
+                .hint("give it with '--output', or as 'output' in the scene file"));
         };
         let extension = output.extension();
         if extension.is_some_and(|e| e.eq_ignore_ascii_case("nrrd")) {
@@ -200,7 +200,7 @@ fn check_strays(options: &PhantomOptions, shape: &ShapeOptions) -> Result<()> {
     let mut strays = given.filter(|key| !["kind", "output", "gzip"].contains(&&**key));
     match strays.next() {
         Some(key) => Err(Error::usage(format!(
-            "'{}' does not go with a hard case: its voxels are what makes it hard",
+            "'{}' cannot be combined with a hard case: its voxels are what makes it hard",
             key.replace("voxel-type", "type")
         ))),
         None => Ok(()),

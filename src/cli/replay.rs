@@ -73,7 +73,7 @@ impl ReplayArguments {
         };
         let Some(carried) = Carried::of(&image)? else {
             return Err(Error::input(format!(
-                "{}: no picture that carries a scene: neither a .png nor an .exr",
+                "{}: not a picture that carries a scene: neither a .png nor an .exr",
                 image.display()
             )));
         };
@@ -206,7 +206,7 @@ fn found(
         }
     }
     Err(Error::input(format!(
-        "{}: not the volume that {} was rendered of: its content is another",
+        "{}: not the volume that {} was rendered from: its content differs",
         shown(&there),
         carried.picture.display()
     ))

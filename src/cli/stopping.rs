@@ -14,12 +14,9 @@ pub fn between_parts(part: &'static str, ended: ErrorKind) -> Result<()> {
     stop::listen(move |signal| {
         match signal {
             Signal::First => note(format_args!(
-                "stopping after the {part} in work; a second signal ends it at once"
+                "stopping after the current {part}; a second signal stops at once"
             )),
-            Signal::Second => error(&Error::new(
-                ended,
-                "stopped at once; what is finished stays",
-            )),
+            Signal::Second => error(&Error::new(ended, "stopped at once; finished work stays")),
         }
         ended
     })

@@ -24,7 +24,7 @@ pub fn choose(
 ) -> Result<Option<Choice>> {
     let Caster::Device { renderer, .. } = caster else {
         note(format_args!(
-            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+            "max-error {bound}: errors are measured against the reference, so nothing is chosen"
         ));
         return Ok(None);
     };

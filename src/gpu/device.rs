@@ -173,7 +173,7 @@ impl Device {
 
 /// Every usable device with its platform. Devices that do not answer are left out.
 fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
-    const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
+    const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one with '--device reference'";
     // Drivers set themselves up at the first call, and not all of them can do it in two threads at once.
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);

@@ -29,7 +29,7 @@ impl SceneOptions {
             && quad.sampling() != method
         {
             return Err(Error::usage(format!(
-                "'sampling' = {method} does not go with 'quad' = {quad}, which is {}",
+                "'sampling' = {method} cannot be combined with 'quad' = {quad}, which is {}",
                 quad.sampling()
             ))
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
@@ -102,11 +102,13 @@ impl SceneOptions {
         match need {
             Need::Modes(modes, why) => {
                 let modes: Vec<&str> = modes.iter().map(|mode| Mode::name(*mode)).collect();
-                Error::usage(format!("'{option}' does not go with mode '{mode}': {why}"))
-                    .hint(format!("it belongs to mode {}", modes.join(", ")))
+                Error::usage(format!(
+                    "'{option}' cannot be combined with mode '{mode}': {why}"
+                ))
+                .hint(format!("it belongs to mode {}", modes.join(", ")))
             }
             Need::Precomputed(why) => Error::usage(format!(
-                "'{option}' does not go with gradient '{}': {why}",
+                "'{option}' cannot be combined with gradient '{}': {why}",
                 self.picture.gradient_method()
             ))
             .hint("it belongs to gradient precomputed"),

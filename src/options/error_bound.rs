@@ -149,7 +149,7 @@ impl ErrorBound {
             .map(ErrorMetric::name)
             .collect();
         Err(Error::usage(format!(
-            "'max-error' {metric} does not go with mode '{mode}': {why}"
+            "'max-error' {metric} cannot be combined with mode '{mode}': {why}"
         ))
         .hint(format!("mode {mode} has {}", there.join(", "))))
     }

@@ -50,7 +50,7 @@ impl ToleranceOptions {
         };
         if let Some(key) = scene.decided().first() {
             return Err(Error::usage(format!(
-                "'max-error' and '{key}' exclude each other: a bound decides by itself how rays are followed"
+                "'max-error' and '{key}' cannot be combined: a bound decides by itself how rays are followed"
             ))
             .hint(format!(
                 "leave out {}, or 'max-error'",
@@ -61,7 +61,7 @@ impl ToleranceOptions {
         }
         if scene.sampling.voxels == Some(Storage::Filtered) {
             return Err(Error::usage(
-                "'max-error' and 'voxels' = filtered exclude each other: a bound may choose exact sampling, which solves the field from the voxels themselves",
+                "'max-error' and 'voxels' = filtered cannot be combined: a bound may choose exact sampling, which solves the field from the voxels themselves",
             )
             .hint("leave one of the two out, or use --voxels image"));
         }
@@ -110,7 +110,7 @@ mod tests {
         ] {
             let refused = bound.check(&parse(text)).unwrap_err();
             assert!(
-                refused.to_string().contains("exclude each other"),
+                refused.to_string().contains("cannot be combined"),
                 "{refused}"
             );
             assert!(ToleranceOptions::default().check(&parse(text)).is_ok());

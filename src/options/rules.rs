@@ -249,17 +249,17 @@ pub(super) struct Contradiction {
 pub(super) const CONTRADICTIONS: &[Contradiction] = &[
     Contradiction {
         is_in: |all| all.camera.fov.is_some() && all.camera.ortho.is_some(),
-        sentence: "'fov' and 'ortho' exclude each other: a picture is perspective or orthographic",
+        sentence: "'fov' and 'ortho' cannot be combined: a picture is perspective or orthographic",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.eye.is_some() && all.camera.view.is_some(),
-        sentence: "'eye' and 'view' exclude each other: both place the eye",
+        sentence: "'eye' and 'view' cannot be combined: both place the eye",
         hint: TURNED,
     },
     Contradiction {
         is_in: |all| all.camera.eye.is_some() && all.camera.carm.is_some(),
-        sentence: "'eye' and 'carm' exclude each other: both place the eye",
+        sentence: "'eye' and 'carm' cannot be combined: both place the eye",
         hint: TURNED,
     },
     Contradiction {
@@ -267,27 +267,27 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
             let from_elsewhere = all.camera.view.is_some_and(|view| view != View::Anterior);
             all.camera.carm.is_some() && from_elsewhere
         },
-        sentence: "'carm' and 'view' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'view' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.carm.is_some() && all.camera.azimuth.is_some(),
-        sentence: "'carm' and 'azimuth' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'azimuth' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.carm.is_some() && all.camera.elevation.is_some(),
-        sentence: "'carm' and 'elevation' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'elevation' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
-        sentence: "'homogeneity' does not go with shading: normals differ inside a node",
+        sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
     },
     Contradiction {
         is_in: |all| averages(all) && !all.quadrature().is_stepped(),
-        sentence: "'homogeneity' does not go with quad 'adaptive', which keeps a bound of its own",
+        sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
         hint: "choose another quad, or leave homogeneity out",
     },
 ];

@@ -71,13 +71,13 @@ impl Storage {
         }
         if method == SamplingMethod::Exact {
             return Err(Error::usage(
-                "'voxels' = filtered does not go with exact sampling, which solves the field from the voxels themselves",
+                "'voxels' = filtered cannot be combined with exact sampling, which solves the field from the voxels themselves",
             )
-            .hint("use --sampling fixed, in dvr a --quad of fixed steps; or --voxels image"));
+            .hint("use --sampling fixed, or in dvr a --quad of fixed steps; or --voxels image"));
         }
         if filter == Filter::Nearest {
             return Err(Error::usage(
-                "'voxels' = filtered does not go with 'filter' = nearest, which takes voxels as they are",
+                "'voxels' = filtered cannot be combined with 'filter' = nearest, which takes voxels as they are",
             )
             .hint("leave one of the two out, or use --voxels image"));
         }

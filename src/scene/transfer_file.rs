@@ -219,7 +219,7 @@ impl<'de> Visitor<'de> for PointAfter {
         }
         if let Some(before) = self.0.filter(|before| value < before[0]) {
             return Err(de::Error::custom(format!(
-                "the value {} is below the one before it, {}: points ascend",
+                "the value {} is below the one before it, {}: points must ascend",
                 concise(value),
                 concise(before[0])
             )));

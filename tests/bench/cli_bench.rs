@@ -54,10 +54,13 @@ fn wrong_usage_says_what_there_is() {
         ("bench vessels --seed 5", "no effect"),
         ("bench vessels --frames 5", "no effect"),
         ("bench b1 --peer true", "no effect"),
-        ("bench speed --frames 0", "is not a whole number from 1 on"),
-        ("bench rays --rays 0", "is not a whole number from 1 on"),
-        ("bench vessels --quick --full", "do not go together"),
-        ("bench vessels --scene both.toml", "do not go together"),
+        (
+            "bench speed --frames 0",
+            "is not a whole number of at least 1",
+        ),
+        ("bench rays --rays 0", "is not a whole number of at least 1"),
+        ("bench vessels --quick --full", "cannot be combined"),
+        ("bench vessels --scene both.toml", "cannot be combined"),
         // A flag wins over the file: what is refused is another thing.
         (
             "bench vessels --scene quick.toml --full --device reference",

@@ -178,7 +178,7 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
     for (line, wanted) in [
         (
             "--max-error rmse:0.01 --step 1",
-            "'step' exclude each other",
+            "'step' cannot be combined",
         ),
         (
             "--max-error rmse:0.01 --sampling exact",
@@ -195,7 +195,7 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
     }
     place.write("both.toml", "max-error = 'rmse:0.01'\nstep = 1\n");
     let said = place.refused("render ball.nrrd -o x.png --scene both.toml", 2);
-    assert!(said.contains("exclude each other"), "{said}");
+    assert!(said.contains("cannot be combined"), "{said}");
     assert!(!place.path("x.png").exists());
 }
 

@@ -286,16 +286,16 @@ fn what_carries_no_scene_is_refused_in_one_sentence() {
     std::fs::write(place.path("cut.png"), &whole[..whole.len() / 2]).unwrap();
     for (file, as_scene, as_image) in [
         ("bare.png", "carries no scene", "carries no scene"),
-        ("a.jpg", "not a scene", "no picture that carries a scene"),
+        ("a.jpg", "not a scene", "not a picture that carries a scene"),
         (
             "latin.toml",
             "TOML in UTF-8",
-            "no picture that carries a scene",
+            "not a picture that carries a scene",
         ),
         (
             "ball.nrrd",
             "not a scene",
-            "no picture that carries a scene",
+            "not a picture that carries a scene",
         ),
         ("cut.png", "not a readable PNG", "not a readable PNG"),
         ("none.png", "none.png", "none.png"),

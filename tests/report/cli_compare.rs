@@ -241,21 +241,24 @@ fn an_option_that_goes_with_no_compared_mode_is_refused() {
     for (options, wanted) in [
         (
             "--modes mip,iso --tf cta",
-            "'tf' does not go with any mode that is compared: mip, iso",
+            "'tf' cannot be combined with any mode that is compared: mip, iso",
         ),
-        ("--modes iso --tf cta", "'tf' does not go with mode 'iso'"),
+        (
+            "--modes iso --tf cta",
+            "'tf' cannot be combined with mode 'iso'",
+        ),
         (
             "--modes mip,minip --iso 3",
-            "'iso' does not go with any mode",
+            "'iso' cannot be combined with any mode",
         ),
         ("--modes dvr --ambient 0.3", "'ambient' has no effect"),
         (
             "--modes iso,dvr --window 0,9",
-            "'window' does not go with any mode",
+            "'window' cannot be combined with any mode",
         ),
         (
             "--modes dvr,mean --probe off",
-            "'probe' does not go with any mode",
+            "'probe' cannot be combined with any mode",
         ),
     ] {
         let said = place.refused(&format!("compare ball.nrrd -o out {options}"), 2);
@@ -303,7 +306,7 @@ fn wrong_usage_is_refused_before_the_work() {
         (
             "compare ball.nrrd -o out --mode iso --modes mip",
             2,
-            "'--modes' and '--mode' exclude each other",
+            "'--modes' and '--mode' cannot be combined",
         ),
         (
             "compare ball.nrrd -o out --modes iso,iso",
@@ -318,7 +321,7 @@ fn wrong_usage_is_refused_before_the_work() {
         (
             "compare ball.nrrd -o out --repeats 0",
             2,
-            "is not a whole number from 1 on",
+            "is not a whole number of at least 1",
         ),
         (
             "compare ball.nrrd -o out --configs bad.toml",

@@ -430,7 +430,10 @@ fn names_that_would_be_taken_for_another_are_refused() {
         ),
         ("--scene peers.toml", "called 'black 9: night'"),
         ("--configs mip.toml", "no setting for mode 'iso'"),
-        ("--quad simpson", "'quad' does not go with mode 'iso'"),
+        (
+            "--quad simpson",
+            "'quad' cannot be combined with mode 'iso'",
+        ),
         ("--max-error value:1%", "only a projection shows values"),
     ] {
         let line = format!("{SMALL} --modes iso --iso 100 {device} {line}");
@@ -439,7 +442,7 @@ fn names_that_would_be_taken_for_another_are_refused() {
     }
     let said = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
     assert!(
-        said.contains("'refine' does not go with mode 'mip'"),
+        said.contains("'refine' cannot be combined with mode 'mip'"),
         "{said}"
     );
     // The control: alone each of these is fine, and a file's modes are those that are compared.

@@ -64,7 +64,7 @@ fn a_peer_that_babbles_is_quoted() {
     let other = r#"*'"load"'*) echo '{"milliseconds":1}' ;;"#;
     let said = refusal(&Fake::answering(&[other]));
     assert!(
-        said.contains("gave no such answer: missing field `loaded`"),
+        said.contains("gave another answer: missing field `loaded`"),
         "{said}"
     );
     let twice = r#"*'"load"'*) printf '{"loaded":1}\nmore\n' ;;"#;

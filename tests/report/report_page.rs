@@ -645,7 +645,7 @@ fn with_long_names() -> Report {
     );
     report.facts = vec![("Compared with".into(), "y".repeat(80))];
     report.findings = vec![format!(
-        "iso: worth their time: {long} (12.3 ms, 1.2×10⁻⁵), {}",
+        "iso: on the Pareto front: {long} (12.3 ms, 1.2×10⁻⁵), {}",
         "z".repeat(60)
     )];
     report.sections[0].scatters = vec![Scatter {

@@ -329,25 +329,28 @@ fn nonsense_is_refused_with_a_reason() {
     for (text, reason) in [
         (
             "mode = 'iso'\ntf = 'cta'",
-            "'tf' does not go with mode 'iso'",
+            "'tf' cannot be combined with mode 'iso'",
         ),
-        ("tf = 'cta'", "'tf' does not go with mode 'iso'"),
+        ("tf = 'cta'", "'tf' cannot be combined with mode 'iso'"),
         (
             "mode = 'mip'\ncaps = true",
-            "'caps' does not go with mode 'mip'",
+            "'caps' cannot be combined with mode 'mip'",
         ),
         (
             "mode = 'mip'\nlmip-threshold = 4",
-            "does not go with mode 'mip'",
+            "cannot be combined with mode 'mip'",
         ),
         ("mode = 'mean'\nshading = 'phong'", "no surface to light"),
-        ("mode = 'dvr'\nwindow = '1,2'", "'window' does not go with"),
+        (
+            "mode = 'dvr'\nwindow = '1,2'",
+            "'window' cannot be combined with",
+        ),
         ("mode = 'dvr'\nlight = 'headlight'", "without shading"),
         ("shading = 'none'\nspecular = 0.5", "without shading"),
-        ("fov = 30\northo = 100", "exclude each other"),
-        ("eye = [1, 2, 3]\nview = 'left'", "exclude each other"),
-        ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "exclude each other"),
-        ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
+        ("fov = 30\northo = 100", "cannot be combined"),
+        ("eye = [1, 2, 3]\nview = 'left'", "cannot be combined"),
+        ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "cannot be combined"),
+        ("carm = 'LAO 10'\nazimuth = 10", "cannot be combined"),
         ("up = [0, 1, 0]", "'up' can only be given with 'eye'"),
         ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
@@ -483,7 +486,7 @@ fn gradients_belong_to_normals_and_their_numbers_to_precomputed_ones() {
     for (wrong, reason) in [
         (
             "gradient-scale = 3",
-            "'gradient-scale' does not go with gradient 'central'",
+            "'gradient-scale' cannot be combined with gradient 'central'",
         ),
         (
             "gradient = 'forward'\ngradient-smooth = 1",
@@ -538,11 +541,11 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
     for (wrong, reason) in [
         (
             "mode = 'iso'\nquad = 'rk4'",
-            "'quad' does not go with mode 'iso'",
+            "'quad' cannot be combined with mode 'iso'",
         ),
         (
             "mode = 'mip'\nquad = 'adaptive'",
-            "'quad' does not go with mode 'mip'",
+            "'quad' cannot be combined with mode 'mip'",
         ),
         ("quad = 'simpson'", "only dvr sums light along the ray"),
         (
@@ -555,15 +558,15 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
         ),
         (
             "mode = 'mean'\nhomogeneity = 0.1",
-            "'homogeneity' does not go with mode 'mean'",
+            "'homogeneity' cannot be combined with mode 'mean'",
         ),
         (
             "mode = 'dvr'\nhomogeneity = 0.1\nshading = 'phong'",
-            "'homogeneity' does not go with shading",
+            "'homogeneity' cannot be combined with shading",
         ),
         (
             "mode = 'dvr'\nhomogeneity = 0.1\nquad = 'adaptive'",
-            "'homogeneity' does not go with quad 'adaptive'",
+            "'homogeneity' cannot be combined with quad 'adaptive'",
         ),
         (
             "mode = 'dvr'\nhomogeneity-rule = 'range'",

@@ -35,7 +35,7 @@ pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
     }
     let modes: Vec<String> = modes.iter().map(Mode::to_string).collect();
     Err(Error::usage(format!(
-        "'{key}' does not go with any mode that is compared: {}",
+        "'{key}' cannot be combined with any mode that is compared: {}",
         modes.join(", ")
     ))
     .hint("leave it out, or name another mode in '--modes'"))

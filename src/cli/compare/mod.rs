@@ -155,7 +155,7 @@ impl CompareArguments {
         let device = self.device.over_file(file.group()?);
         let Some(FilePath(output)) = compare.output.clone() else {
             return Err(Error::usage("no folder for the comparison was named")
-                .hint("give it by '--output', or as 'output' in the scene file"));
+                .hint("give it with '--output', or as 'output' in the scene file"));
         };
         let configs = compare.configs.as_ref();
         let configs = configs

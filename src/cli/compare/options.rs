@@ -105,7 +105,7 @@ impl Named {
     pub fn check(&self) -> Result<()> {
         match self {
             Self(Some(Modes(modes)), Some(mode)) if modes != &[*mode] => Err(Error::usage(
-                "'--modes' and '--mode' exclude each other: both say what is compared",
+                "'--modes' and '--mode' cannot be combined: both say what is compared",
             )
             .hint("leave out '--mode'")),
             _ => Ok(()),

@@ -40,7 +40,7 @@ impl Plan {
     pub fn of(options: OrbitOptions, job: &Job) -> Result<Self> {
         let Some(frames) = options.frames else {
             return Err(Error::usage("no number of frames was given")
-                .hint("give it by '--frames', such as --frames 120"));
+                .hint("give it with '--frames', such as --frames 120"));
         };
         let resume = options.resume.is_some_and(Switch::is_on);
         let (shard, given_by) = (options.shard)
@@ -88,7 +88,7 @@ impl Plan {
         match &self.destination {
             Destination::Animation { path, .. } if self.shard != Shard::WHOLE => {
                 return Err(Error::usage(format!(
-                    "{}: an animation is one file: '--shard' does not go with it",
+                    "{}: an animation is one file: '--shard' cannot be combined with it",
                     path.display()
                 ))
                 .hint("write pictures, such as -o frames/%04d.png, and join them afterwards"));
@@ -104,7 +104,7 @@ impl Plan {
         }
         if job.bound.is_some() {
             return Err(Error::usage(format!(
-                "'max-error' and '{key}' exclude each other: each run would choose for itself, and frames would differ"
+                "'max-error' and '{key}' cannot be combined: each run would choose for itself, and frames would differ"
             ))
             .hint("choose once, by --max-error without it, and repeat the flags that were chosen"));
         }

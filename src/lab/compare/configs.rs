@@ -57,7 +57,7 @@ impl Configs {
         };
         if entries.len() > MAX_SETTINGS {
             return Err(wrong(format!(
-                "{} settings, of which {MAX_SETTINGS} are the most",
+                "{} settings: there may be at most {MAX_SETTINGS}",
                 entries.len()
             )));
         }

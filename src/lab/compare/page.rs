@@ -191,7 +191,7 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: worth their time, nothing less wrong being as fast, with ms and {} ({}): \
+            "{mode}: on the Pareto front, nothing more accurate being as fast, with ms and {} ({}): \
              {settings}",
             metric.title, metric.unit
         )

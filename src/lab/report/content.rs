@@ -153,7 +153,7 @@ pub struct Point {
     pub group: String,
     pub x: f64,
     pub y: f64,
-    /// It is on the Pareto front: nothing less wrong is as fast, times within 10 % counting as equal.
+    /// It is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
     pub on_front: bool,
     /// More figures, as name and value, shown when the point is pointed at.
     pub details: Vec<(String, String)>,

@@ -90,7 +90,7 @@ impl Deviation {
             return Err(Error::failed(
                 "all voxels are equal: no error can be given as a share of their range",
             )
-            .hint("bound another error than value"));
+            .hint("bound an error other than value"));
         }
         let limit = match metric {
             ErrorMetric::Psnr => 10_f64.powf(-bound.bound() / 20.0),

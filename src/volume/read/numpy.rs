@@ -86,7 +86,7 @@ impl Header {
         };
         if length > LONGEST_HEADER {
             return Err(Error::input(format!(
-                "the .npy header announces {length} bytes for itself: {LONGEST_HEADER} are the most"
+                "the .npy header announces {length} bytes for itself: at most {LONGEST_HEADER} are read"
             )));
         }
         let mut text = vec![0; length];

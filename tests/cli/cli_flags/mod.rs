@@ -97,8 +97,8 @@ fn an_unknown_key_is_refused_with_the_nearest_one() {
 fn what_is_no_whole_number_is_refused_in_words() {
     let place = Place::empty();
     for (wrong, reported) in [
-        ("1.5", "'1.5' is not a whole number from 0 on"),
-        ("-1", "'-1' is not a whole number from 0 on"),
+        ("1.5", "'1.5' is not a whole number of at least 0"),
+        ("-1", "'-1' is not a whole number of at least 0"),
         (
             "99999999999999999999",
             "'99999999999999999999' is too large a number",
@@ -110,7 +110,7 @@ fn what_is_no_whole_number_is_refused_in_words() {
     place.write("seed.toml", "seed = 2.5\n");
     let said = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);
     assert!(
-        said.contains("'2.5' is not a whole number from 0 on"),
+        said.contains("'2.5' is not a whole number of at least 0"),
         "{said}"
     );
 }

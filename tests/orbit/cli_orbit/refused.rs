@@ -42,7 +42,7 @@ fn orbits_that_make_no_sense_are_refused() {
         (
             "--frames 3 -o a.apng --shard 0/2",
             2,
-            "'--shard' does not go",
+            "'--shard' cannot be combined",
         ),
         ("--frames 3 -o a.apng --aov depth", 2, "--aov"),
         ("--frames 3 -o a.apng --bit-depth 16", 2, "--bit-depth 16"),

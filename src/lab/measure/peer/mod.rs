@@ -168,7 +168,7 @@ impl Peer {
         let ready: Ready = ask(&mut self.process, Some(request), "prepare the scene")?;
         if !ready.supported {
             return Ok(Readiness::Unsupported {
-                why: ready.why.unwrap_or_else(|| "it does not say why".into()),
+                why: ready.why.unwrap_or_else(|| "it gives no reason".into()),
             });
         }
         Ok(Readiness::Ready(PeerScene {
@@ -292,7 +292,7 @@ impl Peer {
         if ms.is_finite() && ms >= 0.0 {
             return Ok(ms);
         }
-        Err((self.process).failed(&format!("says that something took {ms} ms")))
+        Err((self.process).failed(&format!("reports that something took {ms} ms")))
     }
 }
 
@@ -305,6 +305,6 @@ fn ask<T: DeserializeOwned>(
     let line = request.map(|request| request.line()).transpose()?;
     let answer = process.answer(line, doing)?;
     serde_json::from_value(serde_json::Value::Object(answer)).map_err(|cause| {
-        process.failed(&format!("was to {doing} and gave no such answer: {cause}"))
+        process.failed(&format!("was to {doing} and gave another answer: {cause}"))
     })
 }

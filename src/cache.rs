@@ -72,7 +72,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// The bytes of a kept file, as [`open`] opens it; of a longer one the first `max_bytes`.
+/// The first `max_bytes` bytes of a cached file, or all if it is shorter; see [`open`].
 ///
 /// # Errors
 /// Those of [`open`]; the disk failed.

@@ -1,8 +1,8 @@
 //! A process that a signal kills says so in a sentence first.
 //!
 //! Drivers run their compilers' and our kernels' machine code in this process: what they abort, or do
-//! wrong with memory, ends it. Nothing can be mended then, but the user can be told what was at work, and
-//! kept files that may be the cause are removed, so that the next run begins without them.
+//! wrong with memory, ends it. Nothing can be repaired then, but a message can say what was at work, and
+//! cached files that may be the cause are removed, so that the next run begins without them.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub fn while_at_work(clause: &str) {
     let _ = clause;
 }
 
-/// A kept file that is removed if a signal ends the process: it may be the cause, and can be made again.
+/// A cached file that is removed if a signal ends the process: it may be the cause, and can be made again.
 pub fn suspect(path: &Path) {
     #[cfg(unix)]
     signals::suspect(path);
@@ -50,7 +50,7 @@ mod signals {
         (libc::SIGFPE, c"SIGFPE"),
     ];
 
-    /// More kept files than a process uses.
+    /// More cached files than a process uses.
     const MAX_SUSPECTS: usize = 1024;
 
     // What the handler reads: strings that are never freed.

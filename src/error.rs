@@ -99,7 +99,7 @@ impl Error {
     }
 
     /// A failed read of the input `path`; `doing` says of what (`read the scene`). An input that is not
-    /// there, or may not be read, is [`ErrorKind::Input`]; a disk or network that failed on the way is
+    /// there, or may not be read, is [`ErrorKind::Input`]; a disk or network that failed meanwhile is
     /// [`ErrorKind::Resource`].
     pub fn reading(path: &Path, doing: &str, cause: &io::Error) -> Self {
         use io::ErrorKind::*;
@@ -111,7 +111,7 @@ impl Error {
         Self::new(kind, format!("{}: cannot {doing}: {cause}", path.display()))
     }
 
-    /// A failed write of `path`, or of what is kept there; `doing` says of what (`make the folder`).
+    /// A failed write of `path`, or of what is stored there; `doing` says of what (`make the folder`).
     pub fn writing(path: &Path, doing: &str, cause: &io::Error) -> Self {
         Self::resource(format!("{}: cannot {doing}: {cause}", path.display()))
     }

@@ -1,5 +1,5 @@
 //! Files that are read as text, whatever they turn out to be: a device that never ends, a pipe that
-//! nobody writes into, a file that is no text.
+//! that nothing writes to, a file that is not text.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read};
@@ -26,7 +26,7 @@ pub fn text(path: &Path, doing: &str) -> Result<String> {
 /// Reads a file's bytes, whatever they are; see [`text`].
 ///
 /// # Errors
-/// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nobody writes into.
+/// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nothing writes to.
 pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
     let failed = |cause: io::Error| Error::reading(path, doing, &cause);
     let refused = |why: String| Error::input(format!("{}: cannot {doing}: {why}", path.display()));
@@ -48,7 +48,7 @@ pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Opens a file for reading without waiting: a pipe that nobody has opened for writing is at its end.
+/// Opens a file for reading without waiting: a pipe that no process has opened for writing is at its end.
 ///
 /// # Errors
 /// Those of opening.

@@ -1,4 +1,4 @@
-//! Memory that may not be there. What grows with a volume or a picture is asked for here, so that the
+//! Memory that may not be there. What grows with a volume or a picture is allocated here, so that the
 //! answer no is an error and not the end; for all else the program has an [`Allocator`] that ends it
 //! with a sentence.
 
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 
-/// An empty vector with room for `len` elements: filling it asks for no more memory. `what` says what
+/// An empty vector with room for `len` elements: filling it allocates no more memory. `what` says what
 /// it is for (`the octree`).
 ///
 /// # Errors
@@ -68,9 +68,9 @@ fn may_fail<T>(request: impl FnOnce() -> T) -> T {
     answer
 }
 
-/// The system's allocator, but that a refused request of which nobody makes an error ends the process
+/// The system's allocator, but that a refused request that is not turned into an error ends the process
 /// with a sentence and the exit code of a resource that failed, not with a signal. For the program
-/// alone: a library leaves such things to whoever uses it.
+/// alone: a library leaves such things to the program that uses it.
 pub struct Allocator;
 
 // SAFETY: every request goes to the system's allocator unchanged.

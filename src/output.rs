@@ -51,7 +51,7 @@ pub fn check_folder(path: &Path) -> Result<()> {
 ///
 /// A new file gets the permissions that the umask gives, an old one keeps its own; a symbolic link
 /// stays and its target is replaced. What is no regular file (a device, a pipe) cannot be replaced:
-/// it receives the finished bytes, of which a reader that has gone away wants no more.
+/// it receives the finished bytes, of which a reader that has closed its end wants no more.
 ///
 /// What processes that were killed have left in the folder is removed.
 ///

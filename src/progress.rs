@@ -24,7 +24,7 @@ impl Progress for Silent {
     fn end(&self) {}
 }
 
-/// A stage that is over when this is dropped, also on the way out of a failure.
+/// A stage that ends when this is dropped, also when an error is returned.
 pub struct Stage<'a>(&'a dyn Progress);
 
 impl<'a> Stage<'a> {

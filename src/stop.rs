@@ -1,4 +1,4 @@
-//! Being asked to stop: Ctrl-C, or a scheduler's SIGTERM.
+//! Requests to stop: Ctrl-C, or a scheduler's SIGTERM.
 //!
 //! Long work calls [`listen`] once and checks [`requested`] between its parts. What it has finished by then
 //! is whole, and it ends with [`Error::stopped`](crate::error::Error::stopped). Other work
@@ -59,7 +59,7 @@ fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
         for _ in signals.forever() {
             if let Some(kind) = heard() {
                 forget_unfinished();
-                // Not by way of the drivers' own ends, which wait for their threads.
+                // Without the drivers' exit handlers, which wait for their threads.
                 low_level::exit(kind.exit_code().into());
             }
         }
@@ -96,7 +96,7 @@ mod tests {
         let told = over_failure(failed(), stopped).unwrap_err();
         assert_eq!(told.kind(), ErrorKind::Stopped);
         assert_eq!(over_failure(Ok(3), stopped), Ok(3));
-        // The control: nobody asked, so that the fault is told.
+        // The control: no stop was requested, so that the fault is reported.
         assert_eq!(over_failure(failed(), || Ok(())), failed());
     }
 }

@@ -10,7 +10,7 @@ use crate::frame::{self, Animation, Encoding, Frame, Reel, is_complete};
 
 use super::{FinishedFrames, FrameNames};
 
-/// A frame on its way to its file.
+/// A frame that is to be written to its file.
 pub struct Shot<T> {
     /// The frame's index along the path.
     pub index: u32,
@@ -92,7 +92,7 @@ impl Destination {
         }
     }
 
-    /// Makes the folder of a sequence, or of an animation's finished frames, where there is none.
+    /// Makes the folder of a sequence, or of an animation's finished frames, if it does not exist.
     ///
     /// # Errors
     /// It cannot be made.
@@ -179,7 +179,7 @@ impl Destination {
     }
 }
 
-/// All frames of an animation in order: those that come, which are saved on their way, and between them
+/// All frames of an animation in order: those that are made, which are saved meanwhile, and between them
 /// those that were finished before.
 struct Joined<'a, T, I: Iterator<Item = Result<Shot<T>>>> {
     finished: Option<&'a FinishedFrames>,

@@ -85,7 +85,7 @@ group! {
         peer: String,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
-        /// pictures; made where there is none. It fills during the work: the same command resumes
+        /// pictures; created if it does not exist. It fills during the work: the same command resumes
         /// a run that was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,

@@ -128,7 +128,7 @@ fn widths(command: &Command) -> Vec<((bool, Option<String>), usize)> {
         let values: usize = values.map(|value| value.len() + " <>".len()).sum();
         let may_lack = argument.get_num_args().is_some_and(|n| n.min_values() == 0);
         let width = match argument.get_long() {
-            // A place for a short name is always kept.
+            // Room for a short name is always left.
             Some(long) if may_lack => "-o, --[=".len() + long.len() + values,
             Some(long) => "-o, --".len() + long.len() + values,
             None => values,

@@ -251,7 +251,7 @@ fn links_in(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.
+/// The canonical path of a file, or its absolute path if it does not exist yet.
 fn place(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| absolute(path))
 }

@@ -16,7 +16,7 @@ use crate::volume::{
 
 use super::terminal::note;
 
-/// A volume and what was learnt on the way.
+/// A volume and what was learnt while it was read.
 pub struct Loaded {
     pub volume: Volume,
     pub histogram: Histogram,
@@ -80,7 +80,7 @@ impl Source {
         Path::new(self.path.file_name().unwrap_or_default())
     }
 
-    /// Options of a scene as pictures store them, so that they render the same volume in the same way:
+    /// Options of a scene as pictures store them, so that they render the same volume alike:
     /// its path is as it was given, and the octree's leaf is there.
     #[must_use]
     pub fn stored(&self, mut options: SceneOptions) -> SceneOptions {

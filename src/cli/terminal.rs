@@ -1,4 +1,4 @@
-//! Everything that is printed: data to stdout, messages to stderr. A reader that has gone away is no
+//! Everything that is printed: data to stdout, messages to stderr. A reader that has closed its end is no
 //! error.
 //!
 //! What is printed quotes file names, headers and scene files, which may contain anything. Characters
@@ -15,7 +15,7 @@ use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 use crate::error::{Error, Result};
 
 /// Writes data for programs to stdout as it is: for a format that has no control characters, or escapes
-/// them by itself. When its reader closes the pipe the rest is not wanted, which is fine.
+/// them. When its reader closes the pipe the rest is not wanted, which is fine.
 pub fn to_stdout(data: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     match data(&mut out).and_then(|()| out.flush()) {
@@ -81,7 +81,7 @@ pub fn message(line: impl Display) {
     }
 }
 
-/// A line on stderr. Where that is closed there is nobody to read it.
+/// A line on stderr. If that is closed, nothing reads it.
 fn say(line: impl Display) {
     let _ = Lines(&mut io::stderr().lock()).line(line);
 }

@@ -11,8 +11,8 @@ use super::progress::Bars;
 use super::source::Loaded;
 use super::terminal::note;
 
-/// Chooses the cheapest way of following rays that keeps a bound, and prints the choice. The reference has
-/// but one way, which is what all errors are taken against: it needs no choice, whatever the bound.
+/// Chooses the cheapest setting that meets a bound, and prints the choice. The reference has only
+/// one, against which all errors are measured: it needs no choice, whatever the bound.
 pub fn choose(
     bound: ErrorBound,
     options: &SceneOptions,

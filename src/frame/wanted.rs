@@ -24,7 +24,7 @@ impl Wanted {
         layers: [false; Layer::COUNT],
     };
 
-    /// A picture to be looked at, without layers.
+    /// A picture for display, without layers.
     pub const DISPLAY: Self = Self {
         display: true,
         ..Self::NONE

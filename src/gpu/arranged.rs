@@ -31,7 +31,7 @@ impl Arranged {
     /// The folder that drivers are given, made if need be.
     ///
     /// # Errors
-    /// Why there is none, as a clause.
+    /// The reason why there is none, as a clause.
     pub fn folder(&self) -> Result<&Path, String> {
         let Some(scratch) = &self.scratch else {
             return Err("no place takes files that may be loaded as programs".to_owned());

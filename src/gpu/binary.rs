@@ -128,7 +128,7 @@ fn not_cached(why: impl Display) -> String {
     )
 }
 
-/// The binary in a file of [`packed`] bytes; nothing where there is none, or none that is whole.
+/// The binary in a file of [`packed`] bytes; `None` if there is none, or it is damaged.
 pub fn read(path: &Path) -> Option<Vec<u8>> {
     let bytes = cache::read(path, MAX_BYTES).ok()?;
     unpacked(&bytes).map(<[u8]>::to_owned)

@@ -147,7 +147,7 @@ impl Builder {
         let mut line = serde_json::to_vec(request).map_err(|cause| failed(&cause))?;
         line.push(b'\n');
         if let Some(stdin) = &mut self.child.stdin {
-            // A process that is no more is found below.
+            // A process that has ended is noticed below.
             let _ = stdin.write_all(&line);
         }
         loop {
@@ -263,7 +263,7 @@ mod tests {
         }
         let elsewhere = packed(Err(Error::no_device("another")));
         assert_eq!(unpacked(&elsewhere), Ok(Answer::NotHere));
-        // A damaged binary is none.
+        // A damaged binary is not taken.
         let mut damaged = packed(Ok(Some(binary)));
         *damaged.last_mut().unwrap() ^= 1;
         assert_eq!(unpacked(&damaged), Ok(Answer::NotHere));

@@ -88,7 +88,7 @@ impl Image {
             format.channel_order == ImageChannelOrder::R
                 && format.channel_data_type == channel.data_type()
         };
-        // Formats that are not known here are none of ours.
+        // Formats that are not known here are not used.
         if !formats.iter().flatten().any(fits) {
             return refused(format!(
                 "the device '{name}' has no three-dimensional images of {}",

@@ -61,7 +61,7 @@ pub(super) struct Order<'a> {
 }
 
 /// Builds kernels, in the order given, or takes them from the cache of built programs. The device's
-/// listener hears of those that are built.
+/// listener is notified of those that are built.
 ///
 /// # Errors
 /// A source does not build on this device, then the message holds the compiler's first lines; or its

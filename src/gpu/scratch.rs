@@ -52,7 +52,7 @@ impl Scratch {
             .map(|place| Self::below(&place))
     }
 
-    /// A folder below `place`, of a name that nobody can foresee.
+    /// A folder below `place`, with an unpredictable name.
     fn below(place: &Path) -> Self {
         let [a, b] = [(); 2].map(|()| RandomState::new().hash_one(std::process::id()));
         Self {
@@ -67,7 +67,7 @@ impl Scratch {
     }
 
     /// Makes the folder, for this user alone, unless it is made; then removes beside it what processes left
-    /// that are no more.
+    /// that have ended.
     ///
     /// # Errors
     /// It cannot be made.
@@ -100,7 +100,7 @@ impl Scratch {
         }
     }
 
-    /// Folders like this one whose processes are no more, as far as they can be removed.
+    /// Removes folders like this one whose processes have ended, as far as that is possible.
     fn sweep(&self) {
         let Some(place) = self.path.parent() else {
             return;

@@ -32,7 +32,7 @@ impl Timings {
         self.waiting.push(launch);
     }
 
-    /// Builds the passes that are not built yet; returns the time in ms, 0 where there are none.
+    /// Builds the passes that are not built yet; returns the time in ms, 0 if there are none.
     ///
     /// # Errors
     /// One does not build.

@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// The edge of a finest node in cells: 4 to 32, 4 unless chosen: beams of rays skip more than with the 8 of
+/// The edge of a finest node in cells: 4 to 32, 4 unless chosen: ray packets skip more than with the 8 of
 /// Lesar et al. 2015 (level 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Leaf(u32);

@@ -65,7 +65,7 @@ pub(crate) enum Need {
     Animation,
     /// An experiment that aims rays.
     AimedRays,
-    /// An experiment that times frames of a camera that does not move by itself.
+    /// An experiment that times frames of a camera that it does not move itself.
     TimedFrames,
     /// An experiment that times modes in rounds, beside other programs.
     Rounds,

@@ -1,4 +1,4 @@
-//! Files on their way to their names: hidden, beside them, and gone when their writer is.
+//! Files that are being written: hidden, beside their final names, and removed when their writer ends.
 //!
 //! A writer holds a lock on its file. What is not locked was left by a process that was killed, and is
 //! removed by the next one that writes into the folder. Locks may not reach from one machine of a
@@ -89,7 +89,7 @@ pub fn forget_unfinished() {
     }
 }
 
-/// Removes what processes that are no more left in a folder, as far as it can be.
+/// Removes what processes that have ended left in a folder, as far as that is possible.
 fn sweep(folder: &Path, machine: &str) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries {
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// A file as a process that is no more left it, so long ago.
+    /// A file that a process left which has ended, so long ago.
     fn left(folder: &Path, name: &str, age: Duration) -> PathBuf {
         let path = folder.join(name);
         let file = File::create(&path).unwrap();
@@ -155,7 +155,7 @@ mod tests {
         let there = [&ours, &held, &elsewhere, &long_ago, &own, &named].map(|path| path.exists());
         assert_eq!(there, [false, true, true, false, true, true]);
 
-        // One that is being written is nobody's to remove; once it is dropped it is gone.
+        // A file that is being written is not removed by others; once it is dropped it no longer exists.
         let count = || fs::read_dir(folder).unwrap().count();
         sweep(folder, &here);
         assert_eq!(count(), 5);

@@ -1,4 +1,4 @@
-//! Walking every cell along a ray, in order, after Amanatides and Woo 1987; each wall's crossing is
+//! Walking every cell along a ray, in order, after Amanatides and Woo 1987; each face's crossing is
 //! computed from the start, so that no error accumulates.
 
 use crate::extent::Dims;
@@ -12,7 +12,7 @@ use super::interval::Interval;
 pub struct Lattice {
     /// Boxes along each axis.
     pub count: [usize; 3],
-    /// Where the wall between box 0 and box 1 lies.
+    /// The coordinate of the face between box 0 and box 1.
     first_face: f64,
 }
 
@@ -31,12 +31,12 @@ impl Lattice {
         }
     }
 
-    /// The wall between box `below` and the next.
+    /// The coordinate of the face between box `below` and the next.
     fn face(&self, below: usize) -> f64 {
         below as f64 + self.first_face
     }
 
-    /// The box of a coordinate; on a wall, the higher one.
+    /// The box of a coordinate; on a face, the higher one.
     fn box_at(&self, axis: usize, p: f64) -> usize {
         let index = (p - self.first_face + 1.0).floor().max(0.0);
         (index as usize).min(self.count[axis] - 1)
@@ -77,7 +77,7 @@ pub struct Walk {
     lattice: Lattice,
     interval: Interval,
     cell: [usize; 3],
-    /// Distance to the next wall along each axis; infinite after the last.
+    /// Distance to the next face along each axis; infinite after the last.
     next_mm: [f64; 3],
     at_mm: f64,
     p: [f64; 3],
@@ -104,7 +104,7 @@ impl Walk {
         walk
     }
 
-    /// The wall ahead along an axis: coordinate and distance.
+    /// The face ahead along an axis: coordinate and distance.
     fn face_ahead(&self, axis: usize) -> Option<(f64, f64)> {
         let (dir, cell) = (self.interval.dir[axis], self.cell[axis]);
         let below = if dir > 0.0 {
@@ -118,7 +118,7 @@ impl Walk {
         Some((face, (face - self.interval.start[axis]) / dir))
     }
 
-    /// Goes through the axis's walls that lie at `mm` or before; the last one's coordinate.
+    /// Goes through the axis's faces that lie at `mm` or before; returns the last one's coordinate.
     fn pass(&mut self, axis: usize, mm: f64) -> Option<f64> {
         let mut passed = None;
         while self.next_mm[axis] <= mm {

@@ -99,7 +99,7 @@ pub fn integrate<T: Voxel>(
     }
 }
 
-/// The means of an interval in which something absorbs, the normal where asked for. Their integrals are as
+/// The means of an interval in which something absorbs, the normal if requested. Their integrals are as
 /// exact as [`integrate`]'s, in shares of the interval's length and of `range`, the field's values.
 pub fn means<T: Voxel>(
     field: &Field<T>,

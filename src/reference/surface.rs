@@ -13,7 +13,7 @@ use super::interval::{Entry, Interval};
 pub struct Crossing {
     /// Distance from the interval's start, mm.
     pub at_mm: f64,
-    /// Φ there; with the nearest filter, of the box behind the wall.
+    /// Φ there; with the nearest filter, of the box behind the face.
     pub value: f64,
     /// ∇Φ in index space; 0 on a cap.
     pub gradient: [f64; 3],
@@ -76,7 +76,7 @@ pub fn first_crossing<T: Voxel>(
             };
             return (Some(cap), walked);
         }
-        // A wall of the nearest filter; or a level within the last bit of Φ at a cell face.
+        // A face of the nearest filter; or a level within the last bit of Φ at a cell face.
         if start_in != inside {
             return (Some(crossing(0.0)), walked);
         }

@@ -19,7 +19,7 @@ use super::shade::{Lighting, normal_from_gradient};
 use super::surface::{Crossing, first_crossing};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
-/// rising and falling are told apart.
+/// rising and falling are distinguished.
 const NOISE_SHARE: f64 = 1e-13;
 
 /// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
@@ -30,10 +30,10 @@ pub struct RayResult {
     /// Distance from the ray's origin, mm; +∞ if it meets nothing. For a medium the mean, if it was
     /// requested.
     pub depth_mm: f64,
-    /// Unit, world space, toward lower values; 0 where there is none. Of a medium the mean's direction, where
-    /// it was asked for.
+    /// Unit, world space, toward lower values; 0 where there is none. For a medium the mean's direction, if
+    /// it was requested.
     pub normal_world: DVec3,
-    /// Φ at the hit, the projected value, or of a medium the mean, where it was asked for; physical.
+    /// Φ at the hit, the projected value, or for a medium the mean, if it was requested; physical.
     pub value: f64,
     /// Boxes walked.
     pub cells: u32,

@@ -10,7 +10,7 @@ pub enum HomogeneityRule {
     #[default]
     Optical,
     /// The node's value range: maximum − minimum < E times the volume's range (Lesar et al. 2015,
-    /// §III-E). A transfer function that is steep within it makes any error possible.
+    /// §III-E). A transfer function that changes much within it makes any error possible.
     Range,
 }
 

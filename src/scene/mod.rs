@@ -1,4 +1,4 @@
-//! What to look at and how: plain, validated data. No GPU, no volume, no command line.
+//! What to show and how: plain, validated data. No GPU, no volume, no command line.
 //!
 //! Values (iso, window, thresholds, transfer function) are physical values of the volume; lengths
 //! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.

@@ -85,7 +85,7 @@ impl Storage {
     }
 }
 
-/// Where on a ray the field is looked at.
+/// Where on a ray the field is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SamplingMethod {
     /// The field is sampled at fixed steps.

@@ -2,7 +2,7 @@
 
 use super::{Brightness, Contrast, Gamma, Rgb};
 
-/// The way from linear light to a display picture. Never touches EXR or NPY.
+/// The conversion of linear light to a display picture. Never applied to EXR or NPY.
 ///
 /// In order: composite over `background`, encode as sRGB, `(v − ½)·contrast + ½ + brightness`,
 /// clamp to 0..1, `v^(1/gamma)`.

@@ -36,7 +36,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::extent::{Dims, Range};
 
-/// `physical = slope · stored + intercept`, slope > 0: the file's own calibration, kept beside the
+/// `physical = slope · stored + intercept`, slope > 0: the file's own calibration, stored beside the
 /// voxels so that they keep their type.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rescale {
@@ -192,7 +192,7 @@ impl Volume {
         Ok(())
     }
 
-    /// A negative slope would turn maxima into minima: such voxels are kept negated, which is exact
+    /// A negative slope would turn maxima into minima: such voxels are stored negated, which is exact
     /// in single precision, with the slope's magnitude.
     fn settle_falling_slope(&mut self) -> Result<()> {
         if self.rescale.slope > 0.0 {
@@ -426,7 +426,7 @@ mod tests {
             assert_eq!(volume.range().min, min);
             assert!(volume.stored_range().max < 121_f64.exp2());
         }
-        // No power does both: the range is still that of the voxels as they are kept.
+        // No power does both: the range is still that of the voxels as they are stored.
         let volume = of(vec![3e38, 1e-41]);
         let stored = physical(&volume);
         assert!(volume.stored_range().max < 121_f64.exp2());

@@ -106,7 +106,7 @@ fn without_padding(volume: &Volume, robust: Range, low: f64) -> Range {
     if is_apart { rest } else { robust }
 }
 
-/// The smallest voxel value above `low`; infinity where there is none.
+/// The smallest voxel value above `low`; infinity if there is none.
 fn next_above<T: Voxel>(voxels: &[T], low: f64) -> f64 {
     let chunk = |voxels: &[T]| {
         let above = voxels.iter().map(|&v| v.into()).filter(|&v: &f64| v > low);

@@ -1,4 +1,4 @@
-//! Mapped files that are shortened while they are read. Touching a page that is no more raises SIGBUS,
+//! Mapped files that are shortened while they are read. Touching a page that no longer exists raises SIGBUS,
 //! as does one that the disk cannot give: the process ends there, with a sentence that names the file.
 
 use std::path::Path;
@@ -58,7 +58,7 @@ pub fn end_when_shortened(print: fn(&Error) -> String) -> crate::error::Result<(
     Ok(())
 }
 
-/// Watches the mapped bytes of the file `path`, where the program has asked for it.
+/// Watches the mapped bytes of the file `path`, if the program has requested it.
 pub(super) fn watch(bytes: &[u8], path: &Path) -> Option<Watch> {
     let print = PRINT.get()?;
     let error = Error::resource(format!(

@@ -17,7 +17,7 @@ const COMPARED: f32 = 1.0;
 const MISSED: f32 = 2.0;
 const EXTRA: f32 = 3.0;
 
-/// The three colours of pixels without difference are far from all of the palette's, and told apart
+/// The three colours of pixels without difference are far from all of the palette's, and distinguished
 /// by their lightness alone.
 impl ErrorMap {
     /// The colour of hits that only the reference has: black.

@@ -47,7 +47,7 @@ pub struct Journal {
 impl Journal {
     pub const NAME: &str = "journal.jsonl";
 
-    /// Opens the journal in `folder` to resume its run; begins one where there is none, and with
+    /// Opens the journal in `folder` to resume its run; begins one if there is none, and with
     /// `restart` in any case.
     ///
     /// # Errors

@@ -115,7 +115,7 @@ impl Bench<'_> {
     /// it among all units of the experiment.
     ///
     /// # Errors
-    /// Those of `compute`; the disk; stopped, where the user asked for it.
+    /// Those of `compute`; the disk failed; stopped at the user's request.
     fn unit<T: Serialize + DeserializeOwned>(
         &self,
         key: &str,

@@ -50,7 +50,7 @@ impl Protocol {
         format!("the minimum, the median and the 95th percentile of {of}")
     }
 
-    /// How far the camera has gone in a frame, degrees.
+    /// The angle by which the camera has turned in a frame, degrees.
     pub(super) fn azimuth_deg(self, preset: Preset, frame: usize) -> f64 {
         match self {
             Self::Static => 0.0,

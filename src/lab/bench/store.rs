@@ -28,7 +28,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// Makes the folder where there is none. The work ends between two units, or in one, when
+    /// Creates the folder if it does not exist. The work ends between two units, or in one, when
     /// [`stop::requested`] says so. What another run has left there is removed.
     ///
     /// # Errors

@@ -37,7 +37,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Makes it where there is none.
+    /// Creates the folder if it does not exist.
     ///
     /// # Errors
     /// The disk.

@@ -35,7 +35,7 @@ impl ModeSettings {
     }
 
     /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
-    /// and how by each of `settings`, which are the built-in ones where there are none.
+    /// and how by each of `settings`, which are the built-in ones if none are given.
     ///
     /// # Errors
     /// Usage: the options contradict each other, or a setting cannot be combined with the mode.

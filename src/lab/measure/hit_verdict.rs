@@ -121,7 +121,7 @@ impl<'a> HitJudge<'a> {
     }
 
     /// Whether the reference gives `answer`, to within `max_apart` voxels, for a ray and an iso value
-    /// so near that they cannot be told from these.
+    /// so near that they cannot be distinguished from these.
     fn is_borderline(
         &self,
         ray: Ray,

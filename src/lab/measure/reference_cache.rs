@@ -53,7 +53,7 @@ impl<'a> ReferenceCache<'a> {
         }
     }
 
-    /// Pictures are cached in `folder`, which is made where there is none; those that were not used for
+    /// Pictures are cached in `folder`, which is created if it does not exist; those that were not used for
     /// thirty days, such as those of older programs, are removed from it.
     ///
     /// # Errors
@@ -125,7 +125,7 @@ fn write(path: &Path, frame: &Frame) -> Result<()> {
     })
 }
 
-/// The picture cached in `path`; `None` where there is none that is whole.
+/// The picture cached in `path`; `None` if there is no complete one.
 fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
     let mut file = ZlibDecoder::new(cache::open(path).ok()?);
     let mut frame = Frame::blank(scene.size, wanted).ok()?;

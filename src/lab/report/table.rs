@@ -316,7 +316,7 @@ mod tests {
             field(with_quotes.into()),
             "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""
         );
-        // The control: what is none, and numbers, stay as they are.
+        // The control: other texts, and numbers, are unchanged.
         for text in ["1+1=2", "a-b", "-5", "+1e3", "", "'a", "a=b"] {
             assert_eq!(field(text.into()), text);
         }

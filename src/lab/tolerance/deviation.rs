@@ -125,7 +125,7 @@ impl Deviation {
         }
     }
 
-    /// The planes that the metric looks at.
+    /// The planes that the metric uses.
     pub fn wanted(&self) -> Wanted {
         match self.metric {
             ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {

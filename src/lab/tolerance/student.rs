@@ -81,7 +81,7 @@ mod tests {
             let got = quantile(degrees);
             assert!((got / t - 1.0).abs() < 5e-3, "{degrees}: {got} {t}");
         }
-        // The control: the normal distribution's is none of them.
+        // The control: the normal distribution's differs from all of them.
         assert!((Z / quantile(10) - 1.0).abs() > 0.1);
     }
 

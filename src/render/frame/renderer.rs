@@ -34,7 +34,7 @@ pub struct Options {
     pub lanes: Option<Lanes>,
 }
 
-/// A volume on a device, ready to be looked at.
+/// A volume on a device, ready to be rendered.
 pub struct Renderer<'a> {
     pub(super) device: &'a Device,
     pub(super) volume: &'a Volume,
@@ -111,7 +111,7 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// The volume that is looked at.
+    /// The volume that is rendered.
     pub fn volume(&self) -> &'a Volume {
         self.volume
     }

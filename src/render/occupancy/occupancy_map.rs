@@ -24,7 +24,7 @@ pub struct Occupancy {
 }
 
 impl Occupancy {
-    /// Classifies nodes and cells for rays that are sampled in this way, and uploads what is known of them.
+    /// Classifies nodes and cells for rays with this sampling, and uploads the classes.
     ///
     /// # Errors
     /// The host or the device has no room.

@@ -46,7 +46,7 @@ impl DevicePlane {
     }
 }
 
-/// The planes of a picture's layers on the device: those that are wanted, or needed on the way. Kernels know
+/// The planes of a picture's layers on the device: those that are wanted, or needed to make those. Kernels know
 /// each by its layer's name.
 #[derive(Default)]
 pub struct DeviceLayers([Option<DevicePlane>; Layer::COUNT]);

@@ -18,7 +18,7 @@ pub struct IndexRay {
     pub origin: [f32; 3],
     /// Its direction, of any length: t counts its lengths.
     pub dir: [f32; 3],
-    /// The part of it that is looked at: from `t_min`, not negative, to `t_max`, which may be +∞.
+    /// The part of it that is cast: from `t_min`, not negative, to `t_max`, which may be +∞.
     pub t: [f32; 2],
 }
 
@@ -50,7 +50,7 @@ pub enum RaySource {
     },
     /// Rays that are given one by one, [`IndexRay`]s; they need not run together.
     Buffers {
-        /// Origins, and in w where the part that is looked at begins.
+        /// Origins, and in w where the part that is cast begins.
         origins: Buffer<[f32; 4]>,
         /// Directions, and in w where it ends.
         dirs: Buffer<[f32; 4]>,

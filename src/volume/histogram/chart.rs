@@ -28,7 +28,7 @@ impl Histogram {
     }
 }
 
-/// `value` with as many decimals as tell 1/1000 of the range apart.
+/// `value` with as many decimals as distinguish 1/1000 of the range.
 fn short(value: f64, range: Range) -> String {
     let decimals = if range.width() > 0.0 {
         (3.0 - range.width().log10()).ceil().clamp(0.0, 9.0) as usize

@@ -44,7 +44,7 @@ pub fn suggested_iso(histogram: &Histogram) -> f64 {
 }
 
 /// The share of the values' variance that lies between the two classes of [`Histogram::otsu`], 0 to
-/// 1: the better they are told apart, the nearer to 1.
+/// 1: the better they are separated, the nearer to 1.
 pub fn between_class_share(counts: &[u64]) -> f64 {
     let weights: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
     let Some(upper) = split(&weights) else {

@@ -39,8 +39,8 @@ pub(super) fn white(spec: &PhantomSpec) -> Result<(Voxels, String)> {
 }
 
 /// Adds Gaussian noise of `spec.noise` times the value range (nothing, where that is 0); slice k
-/// draws from the generator's stretch that begins (k + 1) · 2^64 draws on, out of reach of all
-/// other draws.
+/// draws from the generator's sequence from draw (k + 1) · 2^64 on, which does not overlap those of
+/// other slices.
 pub(super) fn add_gaussian<T: Stored>(spec: &PhantomSpec, voxels: &mut [T]) {
     if spec.noise == 0.0 {
         return;

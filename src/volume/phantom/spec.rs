@@ -1,4 +1,4 @@
-//! What a phantom is asked to be.
+//! The specification of a phantom.
 
 use glam::DVec3;
 

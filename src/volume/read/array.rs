@@ -1,4 +1,4 @@
-//! From a parsed header and its payload to a volume: the one way all formats take.
+//! From a parsed header and its payload to a volume, for all formats.
 
 use std::io::Read;
 
@@ -179,7 +179,7 @@ fn usize_voxels(dims: Dims) -> Result<usize> {
         .map_err(|_| Error::resource(format!("{dims} voxels do not fit this machine's memory")))
 }
 
-/// Colour and vector volumes: what several formats say in their own ways.
+/// Colour and vector volumes: which several formats declare, each in its own form.
 pub(super) fn refuse_components(count: u64, scalar: Option<Scalar>) -> Error {
     let of = scalar.map_or(String::new(), |scalar| format!(" of {}", scalar.name()));
     Error::input(format!(

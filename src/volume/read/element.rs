@@ -1,4 +1,4 @@
-//! What a file stores per voxel, and its way into a voxel type the device reads.
+//! What a file stores per voxel, and its conversion to a voxel type the device reads.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -53,7 +53,7 @@ impl Scalar {
         }
     }
 
-    /// The voxel type it is kept in.
+    /// The voxel type that holds it.
     pub(super) fn voxel_type(self) -> VoxelType {
         match self {
             Self::U8 => VoxelType::U8,
@@ -130,7 +130,7 @@ pub(super) struct Loss {
     pub(super) width: f64,
 }
 
-/// Voxels as they are kept: the file's number is `rescale.physical(stored)`.
+/// Voxels as they are stored: the file's number is `rescale.physical(stored)`.
 pub(super) struct Converted {
     pub(super) voxels: Voxels,
     pub(super) rescale: Rescale,
@@ -151,7 +151,7 @@ where
     }
 }
 
-/// Reads up to the end of `buffer` or of the data; the count tells which.
+/// Reads up to the end of `buffer` or of the data; the count says which.
 fn read_full(reader: &mut dyn Read, buffer: &mut [u8]) -> io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {
@@ -194,7 +194,7 @@ impl Growth {
 const CHUNK: usize = 1 << 18;
 
 /// `count` voxels from the reader, straight into their final place. `certain` says that the bytes
-/// are known to be there, so that all memory may be asked for at once.
+/// are known to be there, so that all memory may be allocated at once.
 ///
 /// # Errors
 /// The data end early or are damaged; memory is short.

@@ -2,7 +2,7 @@
 //! formats is looked through.
 //!
 //! Each format's file turns its header into an `Array` (sizes, number type, geometry) and a
-//! `Payload` (where the bytes come from); from there on all go the same way.
+//! `Payload` (where the bytes come from); from there on all are read alike.
 
 mod array;
 mod element;

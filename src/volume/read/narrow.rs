@@ -173,7 +173,7 @@ impl Survey {
     }
 }
 
-/// A number as it is kept, with what that loses.
+/// A number as it is stored, with what that loses.
 fn single<T: Wide>(number: T, rescale: Rescale, loss: &mut Loss) -> f32 {
     let single = number.above(rescale.intercept) as f32;
     let lost = number.left_over(rescale.intercept, single).abs();

@@ -46,7 +46,7 @@ impl Bytes<'_> {
     getter!(f64, f64);
 }
 
-/// The header's size (which tells the version) and byte order.
+/// The header's size (which gives the version) and byte order.
 fn size_and_endian(head: &[u8]) -> Option<(u32, Endian)> {
     let size = head.first_chunk::<4>()?;
     [Endian::Little, Endian::Big]

@@ -18,7 +18,7 @@ const LIKELY_NAMES: [&str; 8] = [
     "volume", "vol", "data", "image", "img", "voxels", "array", "arr_0",
 ];
 
-/// The most arrays looked at.
+/// The most arrays that are considered.
 const MAX_ARRAYS: usize = 4096;
 
 /// The most arrays named where none will do.

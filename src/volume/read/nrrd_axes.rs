@@ -243,7 +243,7 @@ fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
     Ok(found)
 }
 
-/// Lengths are taken as mm whatever the header calls them, as ITK does; the user is told.
+/// Lengths are taken as mm whatever the header calls them, as ITK does; a note says so.
 fn note_units(fields: &Fields, notes: &mut Vec<String>) {
     let Some(text) = fields.get("spaceunits") else {
         return;

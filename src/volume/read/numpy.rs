@@ -21,7 +21,7 @@ use crate::with_voxels;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The longest header: NumPy itself reads no longer one unless told to.
+/// The longest header: NumPy itself reads no longer one by default.
 const LONGEST_HEADER: usize = 10_000;
 
 /// The most axes: NumPy's own limit.

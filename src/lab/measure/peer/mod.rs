@@ -1,5 +1,5 @@
 //! Another renderer beside this one: a *peer* is a program that is started once and draws the same
-//! volume and scene, its time taken by itself, its picture evaluated as ours.
+//! volume and scene, timing itself, its picture evaluated like ours.
 //!
 //! It is talked to over its standard input and output, one JSON object a line
 //! (scripts/peers/README.md): it says hello, loads a volume, prepares scenes of it in its own
@@ -85,7 +85,7 @@ impl Peer {
     /// Longer than any picture, load or mesh should take.
     pub const PATIENCE: Duration = Duration::from_secs(300);
 
-    /// Starts a peer and hears what it is; `command` is written as for a POSIX shell.
+    /// Starts a peer and reads what it is; `command` is written as for a POSIX shell.
     ///
     /// # Errors
     /// Usage: no command. Failed: it cannot be started, ends, gives no valid answer, or none for

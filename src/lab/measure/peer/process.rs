@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 
 /// The longest line of a peer that is read.
 const LONGEST_LINE_BYTES: u64 = 1 << 16;
-/// How long a peer may take to end once it is asked to, or has closed its output.
+/// How long a peer may take to end once it is requested to, or has closed its output.
 const FAREWELL: Duration = Duration::from_secs(2);
 /// The most characters of a peer's output that an error quotes.
 const QUOTED_CHARS: usize = 200;
@@ -85,7 +85,7 @@ impl Process {
     /// # Errors
     /// It ends, stays silent longer than it may, or says anything but one JSON object on a line:
     /// then it is stopped, and every later answer is the same error. It answers `{"error": why}`:
-    /// then it may be asked again.
+    /// then another request may be sent.
     pub fn answer(&mut self, request: Option<String>, doing: &str) -> Result<Map<String, Value>> {
         if let Some(error) = &self.over {
             return Err(error.clone());
@@ -117,7 +117,7 @@ impl Process {
                 Err(TryRecvError::Disconnected) => return Err(self.ended(doing)),
                 Err(TryRecvError::Empty) => {}
             }
-            // A writer that is gone has met a closed pipe: the answer says so.
+            // A writer that has ended has found a closed pipe: the answer says so.
             if let Some(requests) = &self.requests {
                 let _ = requests.send(request);
             }
@@ -168,7 +168,7 @@ impl Process {
     /// Ends it now.
     fn stop(&mut self) {
         self.requests = None;
-        // It may have ended by itself, which is as good.
+        // It may have ended already, which is as good.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -185,7 +185,7 @@ impl Drop for Process {
     }
 }
 
-/// Writes lines until there are no more, or nobody reads them.
+/// Writes lines until there are no more, or the reader has closed its end.
 fn spawn_writer(mut stdin: ChildStdin) -> Sender<String> {
     let (sender, lines) = mpsc::channel::<String>();
     thread::spawn(move || {
@@ -201,7 +201,7 @@ fn spawn_writer(mut stdin: ChildStdin) -> Sender<String> {
     sender
 }
 
-/// Reads lines until the output ends, a line is too long, or nobody wants them. What is no UTF-8
+/// Reads lines until the output ends, a line is too long, or the receiver is dropped. What is not UTF-8
 /// is replaced.
 fn spawn_reader(stdout: ChildStdout) -> Receiver<String> {
     // A peer that talks without end is held up by the pipe, not by the memory.

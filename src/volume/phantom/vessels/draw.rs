@@ -1,8 +1,8 @@
 //! The tree as voxels: each voxel takes the share of it that the nearest vessel covers.
 //!
-//! The mid-value isosurface of the trilinear field then runs within 0.3 voxel of the tube's wall
+//! The mid-value isosurface of the trilinear field then runs within 0.3 voxel of the tube's surface
 //! where its radius is a voxel or more (measured: 0.12 voxel rms at 128³, on the inner side, for
-//! the wall is curved); finer vessels do not reach the middle value everywhere, as in a scanner.
+//! the surface is curved); finer vessels do not reach the middle value everywhere, as in a scanner.
 //!
 //! Only the voxels near a vessel are visited, so the time goes with the vessels' volume.
 

@@ -76,7 +76,7 @@ mod tests {
         ends.iter().map(|&(end, r)| r * r * length(end)).sum()
     }
 
-    /// Murray's angles are where the volume is least: moving the branching any way adds to it.
+    /// Murray's angles are where the volume is smallest: moving the branching any way adds to it.
     #[test]
     fn branching_angles_make_the_volume_least() {
         let is_minimal = |cosines: [f64; 2], radii: [f64; 3]| {

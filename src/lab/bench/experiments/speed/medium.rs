@@ -87,7 +87,7 @@ impl Medium {
 /// A setting that was tried.
 struct Tried {
     medium: Medium,
-    /// A frame, where the bound is kept.
+    /// The time of a frame, ms, if it is within the bound.
     ms: f64,
 }
 

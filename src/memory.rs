@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn room_that_is_not_there_is_an_error_and_room_that_is_is_kept() {
+    fn memory_that_is_not_there_is_an_error_and_memory_that_is_there_is_held() {
         let refused = room::<u64>(usize::MAX / 16, "a test").unwrap_err();
         assert_eq!(refused.kind(), ErrorKind::Resource);
         assert!(refused.to_string().contains("a test"), "{refused}");

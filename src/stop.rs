@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stop_is_told_in_place_of_a_failure_and_of_nothing_else() {
+    fn a_stop_is_reported_in_place_of_a_failure_and_of_nothing_else() {
         let stopped = || Err(Error::stopped("stopped"));
         let failed = || Err::<u8, _>(Error::failed("no kernel"));
         let told = over_failure(failed(), stopped).unwrap_err();

@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn what_gives_way_is_an_option() {
+    fn what_is_replaced_is_an_option() {
         let names = names_of_options();
         for replaced in REPLACED {
             for option in replaced.options {

@@ -200,7 +200,7 @@ fn traversals_of_a_volume_give_the_same_bytes() {
     assert_eq!(json["rows"][0]["volume"], "=1+1");
     assert!(json["rows"][0]["median_ms"].is_number(), "{json:#}");
 
-    // Where the files lay is nobody else's business; the control: they are named.
+    // Where the files lay is private; the control: they are named.
     let folder = place.path("").file_name().unwrap().display().to_string();
     for file in ["results.json", "results.csv", "report.html"] {
         let text = std::fs::read_to_string(place.path("out").join(file)).unwrap();

@@ -214,7 +214,7 @@ fn the_reference_needs_no_choice() {
 }
 
 #[test]
-fn what_was_chosen_is_told_and_the_stored_scene_gives_the_same_picture() {
+fn what_was_chosen_is_reported_and_the_stored_scene_gives_the_same_picture() {
     let Some(device) = common::device() else {
         return;
     };

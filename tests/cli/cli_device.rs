@@ -319,7 +319,7 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
         assert_eq!(apart, 0.0, "{name}");
     }
     assert!(channel(&reference, "A").iter().any(|&a| a > 0.05));
-    // Steps that are asked for: as many as were reported, here coarse ones.
+    // Requested steps: as many as were reported, here coarse ones.
     let said = said_by(&format!("render {view} -o a.exr --step 10"));
     assert!(
         said.contains("samples per ray") && said.contains("in all"),
@@ -504,7 +504,7 @@ fn what_may_not_change_a_picture_does_not() {
             "--skip off",
         ] {
             render("b.png", flags);
-            // The metadata says what was asked for.
+            // The metadata says what was requested.
             assert_ne!(
                 bytes(&place, "a.png"),
                 bytes(&place, "b.png"),
@@ -588,7 +588,7 @@ fn a_large_volume_takes_little_memory_beyond_its_file() {
     assert!(stats["counts"]["hits"].as_u64().unwrap() > 1000);
 }
 
-/// Rendered by a device of 1 GiB, where the driver can be told that it has no more.
+/// Rendered by a device of 1 GiB, where the driver can be limited to that.
 fn by_a_small_device(place: &Place, line: &str) -> std::process::Output {
     let mut command = place.command(line);
     command.env("POCL_MEMORY_LIMIT", "1");
@@ -604,7 +604,7 @@ fn a_device_that_is_too_small_is_reported_before_reading_and_building() {
     if !common::device().is_some_and(|d| d.info().platform.contains("Portable Computing")) {
         return common::skip("this driver's memory cannot be limited");
     }
-    // 2 GiB announced and none of it there: whoever reads sees damage.
+    // 2 GiB announced and none of it there: a reader sees damage.
     let header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 512\nencoding: gzip\nendian: little\n\n";
     place.write("large.nrrd", &format!("{header}no gzip"));
     let line = format!("render large.nrrd -o a.png --iso 1 {device}");

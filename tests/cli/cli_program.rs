@@ -153,7 +153,7 @@ fn the_certificate_is_of_surfaces_alone() {
     };
     assert_eq!(render("--iso 100 --aov all"), (true, true));
     assert_eq!(render("--iso 100 --aov certificate"), (true, true));
-    // Fixed steps prove nothing that could be told.
+    // Fixed steps prove nothing that could be reported.
     assert_eq!(render("--iso 100 --aov all --step 1"), (true, false));
     for mode in ["mip", "lmip", "minip", "mean", "dvr"] {
         assert_eq!(render(&format!("--mode {mode} --aov all")), (false, false));

@@ -96,7 +96,7 @@ pub const CHRIS_MRA: &str = "niivue_chris_MRA/chris_MRA.nii.gz";
 pub const AORTA: &str = "vmtk_aorta/aorta.mha";
 pub const STENT: &str = "stent_npz/stent.npz";
 
-/// One of them; `None`, and why, where there is none.
+/// One of them; if there is none, says why and returns `None`.
 pub fn real_volume(file: &str) -> Option<Volume> {
     let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
         eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");

@@ -173,7 +173,7 @@ const ROWS: &[Row] = &[
     Row { volume: "i16", reflection: PHONG, toward_light: SIDE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
     Row { volume: "i16", shown: Shown::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
     Row { volume: "i16", shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
-    // Sheared axes; the calibration falls, so that the voxels are kept negated.
+    // Sheared axes; the calibration falls, so that the voxels are stored negated.
     Row { volume: "falling", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
     Row { volume: "falling", shown: Shown::Lmip, limits: &[(ValueMean, 0.004)], ..PLAIN },
     Row { volume: "falling", shown: Shown::Minip, limits: &[(ValueMean, 0.001)], ..PLAIN },
@@ -390,7 +390,7 @@ fn describe(row: &Row) -> String {
     )
 }
 
-/// Renders a volume's rows; what breaks a limit is told all at once.
+/// Renders a volume's rows; all broken limits are reported at once.
 fn check(name: &str) {
     let Some(device) = common::device() else {
         return;

@@ -1,4 +1,4 @@
-//! Normals by every way of finding gradients, by the reference and on the device, against closed
+//! Normals by every method of computing gradients, by the reference and on the device, against closed
 //! forms; and what precomputed gradients cost. `--no-capture | grep '|'` prints what is measured.
 
 use crate::common;

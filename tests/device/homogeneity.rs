@@ -85,7 +85,7 @@ fn both(device: &Device, volume: &Volume, emission: &Emission, limit: f64) -> [C
     })
 }
 
-/// The optical rule keeps its limit, also under a transfer function that is steep within a part of
+/// The optical rule keeps its limit, also under a transfer function that changes much within a part of
 /// the value range that the other rule takes for nothing; that one loses a picture.
 fn check(name: &str, volume: &Volume, opaque: TransferFunction) {
     let Some(device) = common::device() else {

@@ -120,7 +120,7 @@ fn rays_find_the_same_in_whatever_company() {
 }
 
 #[test]
-fn a_ray_is_looked_at_from_its_least_t_to_its_greatest() {
+fn a_ray_is_cast_from_its_smallest_t_to_its_greatest() {
     let Some(device) = common::device() else {
         return;
     };

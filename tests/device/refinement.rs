@@ -1,5 +1,5 @@
 //! The refiners against closed-form roots: rows of voxels whose profile crosses the iso value once,
-//! looked at along the rows.
+//! compared along the rows.
 
 use crate::common;
 
@@ -109,7 +109,7 @@ fn mean(errors: &[f64]) -> f64 {
 }
 
 #[test]
-fn bisection_and_regula_falsi_keep_their_bound() {
+fn bisection_and_regula_falsi_stay_within_their_bound() {
     let Some(device) = common::device() else {
         return;
     };

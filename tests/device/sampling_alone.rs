@@ -13,7 +13,7 @@ use glam::DVec3;
 const DIMS: [u64; 3] = [17, 15, 13];
 const STEP_MM: f64 = 0.75;
 
-/// Linear, so that the mean of samples on a straight way is the value in its middle.
+/// Linear, so that the mean of samples on a straight path is the value in its middle.
 fn linear(p: DVec3) -> f64 {
     5.0 + p.dot(DVec3::new(1.0, -0.5, 2.0))
 }
@@ -56,7 +56,7 @@ fn wrong_pixels(sampled: &Sampled, scene: &Scene) -> usize {
             let (origin, dir, enter, exit) = path(scene, pixel);
             let steps = ((exit - enter) / STEP_MM).max(0.0);
             let count = sampled.counts[pixel];
-            // Where the way is a whole number of steps rounding decides on the last.
+            // Where the path is a whole number of steps rounding decides on the last.
             let right_count = (f64::from(count) - steps.floor()).abs() < 0.5
                 || (steps - steps.round()).abs() < 1e-4
                     && (f64::from(count) - steps.round()).abs() < 1.5;

@@ -64,7 +64,7 @@ fn what_is_lost_stays_below_the_bound_and_samples_are_saved() {
             let (ended, samples) = render(method, termination);
             let lost = max_lost(&whole, &ended);
             if method == QuadratureMethod::Adaptive {
-                // Its own bound holds for what is lost at the end too, whatever is asked for.
+                // Its own bound holds for what is lost at the end too, whatever is requested.
                 assert!(
                     lost <= Quadrature::DEFAULT_BOUND,
                     "{method} {termination}: {lost}"

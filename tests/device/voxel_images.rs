@@ -223,7 +223,7 @@ fn u16_is_filtered_within_eight_bits() {
 
 #[test]
 fn i16_is_filtered_within_eight_bits() {
-    // Its least value too, which a signed texel would not tell from the next.
+    // Its smallest value too, which a signed texel would not distinguish from the next.
     filters_within_eight_bits(|n| (n * 65535.0 - 32768.0) as i16);
 }
 

@@ -154,7 +154,7 @@ fn tf_spike() {
     fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, 0.1 * rising(0.9))
     }
-    // Whole intervals between the values of two samples left out; panels judged by their points
+    // Whole intervals between the values of two samples left out; panels evaluated by their points
     // alone, whatever lies between.
     let left_out = kernel(
         "lib/light/preintegrated.clh",

@@ -29,7 +29,7 @@ pub const CASES: &[&str] = &[
     "white-noise",
 ];
 
-/// The turning points of the cubic forgotten: only the ends of a cell are looked at.
+/// The turning points of the cubic forgotten: only the ends of a cell are tested.
 const NO_TURNS: Mutant = kernel(
     "lib/volume/cubic.clh",
     &[(
@@ -77,7 +77,7 @@ const NO_ROOT: Mutant = kernel(
     ],
 );
 
-/// A beam taken for the ray on its lower side.
+/// A packet taken for the ray on its lower side.
 const LOWEST_RAY: Mutant = kernel(
     "lib/skip/packet.clh",
     &[(
@@ -397,7 +397,7 @@ fn zero_gradient() {
         let mut lines = is("every ray hits", seen.hits() == seen.pixels());
         for pixel in 0..seen.pixels() {
             let off = seen.normal(pixel).distance(-seen.ray(pixel).dir_world);
-            lines.extend(near("the normal's way from the eye", off, 0.0, 1e-3));
+            lines.extend(near("the normal's distance from the eye", off, 0.0, 1e-3));
         }
         lines.truncate(3);
         lines

@@ -23,7 +23,7 @@ fn row<'a>(results: &'a Value, mode: &str, setting: &str) -> &'a Value {
 const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 2 --iso 100 --cache cache";
 
 #[test]
-fn every_setting_is_judged_timed_and_pictured() {
+fn every_setting_is_evaluated_timed_and_pictured() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -267,7 +267,7 @@ fn an_option_that_goes_with_no_compared_mode_is_refused() {
 }
 
 #[test]
-fn what_is_done_before_a_failure_is_kept() {
+fn what_is_done_before_a_failure_stays() {
     let Some(device) = common::device_flag() else {
         return;
     };

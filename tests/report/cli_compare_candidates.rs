@@ -128,7 +128,7 @@ fn what_a_bound_chooses_takes_part_and_is_stored() {
     assert_eq!(rows[1]["flags"], chosen["chosen"]);
     let greatest = |row: &Value| row["error"]["value"]["max"].as_f64().unwrap();
     assert!(greatest(&rows[1]) <= 0.01);
-    // The control: without it the bound would not be kept.
+    // The control: without it the bound would not be met.
     assert!(greatest(&rows[0]) > 0.01, "{}", greatest(&rows[0]));
 }
 
@@ -489,7 +489,7 @@ fn a_flat_volume_is_compared_too() {
 }
 
 #[test]
-fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
+fn without_a_cache_folder_nothing_is_cached_and_all_else_works() {
     let Some(device) = common::device_flag() else {
         return;
     };

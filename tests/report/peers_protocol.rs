@@ -21,7 +21,7 @@ use fake_peer::{
 };
 
 #[test]
-fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
+fn a_peer_says_what_it_is_and_draws_as_often_as_requested() {
     let depth = [ONE, INFINITE].concat();
     let forgets = r#"*'"forget"'*) echo '{}' ;;"#;
     let pictures = renders(&two_pixels(), Some(&depth));
@@ -84,7 +84,7 @@ fn a_picture_without_depth_is_one() {
 }
 
 #[test]
-fn a_volume_is_told_in_its_own_voxels() {
+fn a_volume_is_sent_in_its_own_voxels() {
     let keep = r#"*'"load"'*) cp "$(printf '%s' "$line" | sed 's/.*"file":"\([^"]*\)".*/\1/')" "$1/voxels"; echo '{"loaded":0}' ;;"#;
     let fake = Fake::answering(&[keep]);
     let volume = volume();
@@ -107,7 +107,7 @@ fn a_volume_is_told_in_its_own_voxels() {
 }
 
 #[test]
-fn a_scene_is_told_in_stored_values_and_linear_light() {
+fn a_scene_is_sent_in_stored_values_and_linear_light() {
     let fake = Fake::answering(&[LOAD, READY]);
     let volume = volume();
     let mut peer = fake.start().unwrap();

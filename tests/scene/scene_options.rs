@@ -286,7 +286,7 @@ fn order_statistics_are_replaced_by_their_values() {
         ["lmip-threshold = p1 is 7", "window = p99.5,p1 is 40,7"]
     );
     assert!(options.resolve(&SUBJECT).is_ok());
-    // The controls: a share of the range is none, and nothing is wanted where none is named.
+    // The controls: a share of the range is not, and nothing is wanted if none is named.
     let share = file("iso = '50%'");
     let of_share = share.clone().measured(SUBJECT.range, |_| unreachable!());
     assert_eq!(of_share, (share, vec![]));

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_far_from_zero_are_told_apart() {
+    fn edges_far_from_zero_are_distinguished() {
         let edges = |min: f64, max: f64| -> Vec<String> {
             let range = Range { min, max };
             let counts = vec![1; 16];

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_far_from_zero_are_kept_to_the_last_digit() {
+    fn whole_numbers_far_from_zero_are_stored_to_the_last_digit() {
         let check = |(stored, rescale, loss): (Vec<f64>, Rescale, Loss), values: &[i128]| {
             assert_eq!((loss.changed, loss.largest), (0, 0.0));
             let physical = stored.iter().map(|&v| rescale.physical(v) as i128);
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn doubles_beyond_single_precision_are_clamped_and_infinities_kept() {
+    fn doubles_beyond_single_precision_are_clamped_and_infinities_stay() {
         let numbers = [1e300, -1e300, f64::INFINITY, 0.5, f64::NAN];
         let (stored, _, loss) = narrowed(&numbers, Scalar::F64);
         let largest = f64::from(f32::MAX);

@@ -100,7 +100,7 @@ fn crossing_a_plane_leaves_no_hole() {
         for pair in lengths.windows(2) {
             assert!(apart(&pair[0], &pair[1]) < 0.05, "{}", engine.name);
         }
-        // The control: over all of the way it changes more.
+        // The control: over the whole distance it changes more.
         assert!(apart(&lengths[0], &lengths[20]) > 0.05, "{}", engine.name);
     }
 }

@@ -34,7 +34,7 @@ fn visible_points(
 ) -> Option<(f64, f64)> {
     let index_from_world = volume.geometry().index_from_world();
     let last = DVec3::from_array(volume.dims().usize().map(|n| n as f64 - 1.0));
-    let is_kept = |mm: &f64| {
+    let is_visible = |mm: &f64| {
         let p_world = ray.origin_world + ray.dir_world * *mm;
         let p = index_from_world.transform_point3(p_world);
         let in_volume = p.cmpge(DVec3::ZERO).all() && p.cmple(last).all();
@@ -44,9 +44,11 @@ fn visible_points(
                 .all(|c| c.normal_world().dot(p_world) + c.offset() >= 0.0)
     };
     let steps = (farthest_mm / APART_MM) as u32;
-    let mut kept = (0..steps).map(|k| f64::from(k) * APART_MM).filter(is_kept);
-    let first = kept.next()?;
-    Some((first, kept.next_back().unwrap_or(first)))
+    let mut visible = (0..steps)
+        .map(|k| f64::from(k) * APART_MM)
+        .filter(is_visible);
+    let first = visible.next()?;
+    Some((first, visible.next_back().unwrap_or(first)))
 }
 
 /// Pixels whose interval is not where the kept points are, and pixels that see something.

@@ -215,7 +215,7 @@ fn a_plane_beyond_all_numbers_keeps_all_or_nothing() {
     }
 }
 
-/// Planes that cut a hair before and behind the walls between cells, where the voxels are the iso value
+/// Planes that cut a hair before and behind the faces between cells, where the voxels are the iso value
 /// itself: what the certificate proves of a clipped ray is so.
 #[test]
 fn what_is_proven_of_clipped_rays_is_so() {

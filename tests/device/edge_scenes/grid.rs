@@ -189,7 +189,7 @@ fn nearest_voxels_along_the_grid() {
     let Some(device) = common::device() else {
         return;
     };
-    // Off the walls between voxels, where a tie is anyone's.
+    // Off the faces between voxels, where a tie may go either way.
     let volume = noise();
     let trial = Trial {
         device: &device,

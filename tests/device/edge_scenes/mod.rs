@@ -105,7 +105,7 @@ impl Trial<'_> {
         scene
     }
 
-    /// Renders every mode both ways; gives the figures above their limits.
+    /// Renders every mode with both; gives the figures above their limits.
     fn failures(&self, cameras: &[(String, Camera, ImageSize)]) -> Vec<String> {
         let mut rows = Vec::new();
         let mut scenes = Vec::new();

@@ -168,7 +168,7 @@ fn projections_stay_within_the_voxels_range() {
     }
 }
 
-/// The least value on a ray through voxels of the smaller value alone is that value, not what rounding
+/// The smallest value on a ray through voxels of the smaller value alone is that value, not what rounding
 /// leaves of the greater.
 #[test]
 fn a_minimum_on_a_face_of_small_values_is_small() {

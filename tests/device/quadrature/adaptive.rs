@@ -1,5 +1,5 @@
 //! The adaptive rule keeps its bound: against the double-precision reference, under transfer
-//! functions that are steep, spiked, stepped or next to opaque, on phantoms and on real volumes where
+//! functions that change abruptly, spiked, stepped or next to opaque, on phantoms and on real volumes where
 //! `ANGIORAY_DATA` names their folder. `cargo nextest run --test device --no-capture quadrature:: | grep '|'`
 //! prints how many pixels do.
 
@@ -16,7 +16,7 @@ use super::knot;
 use crate::common::{self, on_device, on_reference};
 
 const SIZE_PX: u32 = 64;
-/// The least share of pixels within the bound.
+/// The minimum share of pixels within the bound.
 const MIN: f64 = 0.999;
 const BOUNDS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
@@ -36,7 +36,7 @@ fn hard() -> Vec<(&'static str, Points)> {
     vec![
         ("smooth", vec![(0.1, BLUE, 0.0), (0.9, WARM, 0.6)]),
         (
-            "steep",
+            "abrupt",
             vec![(0.3, BLUE, 0.0), (0.31, WARM, 0.7), (1.0, BLUE, 0.8)],
         ),
         (

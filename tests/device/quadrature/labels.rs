@@ -34,7 +34,7 @@ fn band(value: f64) -> TransferFunction {
     TransferFunction::new(knots.to_vec(), 1.0).unwrap()
 }
 
-/// Every rule, and with every one that allows it every way of taking leaves for one value.
+/// Every rule, and with every one that allows it every method of taking leaves for one value.
 fn rules() -> Vec<(Quadrature, Option<Homogeneity>)> {
     let mut rules = Vec::new();
     for method in QuadratureMethod::ALL {

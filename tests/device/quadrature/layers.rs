@@ -163,7 +163,7 @@ fn two_thin_sheets_have_the_mean_of_their_places() {
             _ => missed += usize::from(off.is_nan() || off >= 0.01),
         }
     }
-    // The control: rules that look at points alone pass by a sheet, or take one for thicker than it is.
+    // The control: rules that sample points alone miss a sheet, or take one for thicker than it is.
     assert!(missed >= 4 || common::device().is_none(), "{missed}");
 }
 

@@ -126,7 +126,7 @@ fn the_default_keeps_its_bound_at_a_cost_that_does_not_grow_with_the_ratio() {
 }
 
 #[test]
-fn steps_that_are_asked_for_are_taken_and_what_they_cost_is_reported() {
+fn requested_steps_are_taken_and_their_cost_is_reported() {
     let (_, volume, toward, height_mm) = cases().swap_remove(1);
     for more in [
         "quad = 'simpson'",

@@ -43,7 +43,7 @@ fn the_driver_leaves_nothing_that_could_be_damaged_and_uses_nothing_that_is() {
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names.collect::<Vec<String>>()
     };
-    // What a process left that is no more.
+    // What a process left that has ended.
     let left = temporary.join("angioray-driver-0");
     fs::create_dir(&left).unwrap();
     fs::write(left.join("held"), "").unwrap();
@@ -83,7 +83,7 @@ fn cached_kernels_may_be_damaged() {
     assert!(whole == after);
 }
 
-/// A cached kernel that is whole, but whose code is none: as where another processor has this one's name.
+/// A cached kernel that is complete, but whose code does not run: as where another processor has this one's name.
 fn with_other_code(cached: &[u8]) -> Option<Vec<u8>> {
     let binary = &cached[blake3::OUT_LEN..];
     let library = binary.windows(4).position(|bytes| bytes == b"\x7fELF")?;

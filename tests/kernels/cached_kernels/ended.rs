@@ -19,7 +19,7 @@ fn links() -> bool {
     common::device().is_some_and(|device| device.info().platform.contains("Portable Computing"))
 }
 
-/// A folder of programs with `ld` as this script; without one where there is none.
+/// A folder of programs with `ld` as this script; without one if there is none.
 fn programs(place: &Place, ld: Option<&str>) -> std::path::PathBuf {
     let folder = place.path("programs");
     let _ = fs::remove_dir_all(&folder);
@@ -72,7 +72,7 @@ fn a_driver_that_ends_while_it_builds_is_reported() {
 
 #[cfg(unix)]
 #[test]
-fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
+fn building_reports_progress_and_ends_on_request() {
     let Some(place) = Place::new() else { return };
     if !links() {
         return common::skip("this driver needs no 'ld'");
@@ -178,7 +178,7 @@ fn all_is_built_before_the_first_launch() {
     assert_eq!(device.built_kernels(), 2);
     launched(&passes).finish(&device).unwrap();
     assert_eq!(device.built_kernels(), 2);
-    // The control: what was not asked for is built at the end.
+    // The control: what was not requested is built at the end.
     launched(&[unique(2)]).finish(&device).unwrap();
     assert_eq!(device.built_kernels(), 3);
 }

@@ -159,7 +159,7 @@ fn what_is_no_whole_kernel_is_built_anew() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_told() {
+fn a_folder_that_cannot_be_made_is_reported() {
     let Some(place) = Place::new() else { return };
     let file = place.path("file");
     fs::write(&file, "").unwrap();

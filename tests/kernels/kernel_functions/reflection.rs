@@ -76,8 +76,8 @@ impl Model {
     }
 }
 
-/// Phong 1975: the mirrored light against the eye. Blinn 1977: the half-way vector against the
-/// normal. `None`: too near where a side turns away to tell which side single precision sees.
+/// Phong 1975: the mirrored light against the eye. Blinn 1977: the halfway vector against the
+/// normal. `None`: too near where a side turns away to know which side single precision sees.
 fn expected(points: &Points, i: usize, model: Model, two_sided: bool) -> Option<[f64; 3]> {
     let color = xyz(points.colors[i]);
     if model == Model::None {

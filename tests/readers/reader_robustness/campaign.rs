@@ -66,14 +66,14 @@ fn joined(parts: impl Iterator<Item = (&'static str, Figures)>) -> ByKind {
 /// Takes the cases one by one; what is wrong is said with the case's number.
 fn take(
     cases: impl Iterator<Item = u64>,
-    judge: impl Fn(u64) -> Outcome,
+    check: impl Fn(u64) -> Outcome,
 ) -> Result<ByKind, String> {
     let watch = Watch::start();
     let mut all = ByKind::new();
     for case in cases {
         watch.begin(case);
         let began = Instant::now();
-        let (outcome, held) = max_held(|| catch_unwind(AssertUnwindSafe(|| judge(case))));
+        let (outcome, held) = max_held(|| catch_unwind(AssertUnwindSafe(|| check(case))));
         let took = began.elapsed();
         let held = usize::try_from(held).unwrap_or(0);
         let outcome = outcome.map_err(|_| format!("case {case} panics"))?;
@@ -141,7 +141,7 @@ fn number(variable: &str) -> Option<u64> {
 fn changed_headers_are_read_or_refused_and_nothing_else() {
     if let Some(one) = number(ONE_VARIABLE) {
         let subjects = Subjects::new();
-        take(one..=one, |case| subjects.judge(case)).unwrap();
+        take(one..=one, |case| subjects.check(case)).unwrap();
         return;
     }
     let count = number(CASES_VARIABLE)
@@ -153,7 +153,7 @@ fn changed_headers_are_read_or_refused_and_nothing_else() {
     let work = |worker: usize| {
         let subjects = Subjects::new();
         let cases = (0..CASES).step_by(step).skip(worker).step_by(workers);
-        take(cases, |case| subjects.judge(case)).unwrap_or_else(|wrong| {
+        take(cases, |case| subjects.check(case)).unwrap_or_else(|wrong| {
             panic!("{wrong}; {ONE_VARIABLE}=NUMBER takes a case alone");
         })
     };

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// Counts what each thread holds, and the most it ever held since asked.
+/// Counts what each thread holds, and the most it has held since the count began.
 struct Counting;
 
 thread_local! {

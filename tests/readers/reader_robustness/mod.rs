@@ -119,7 +119,7 @@ fn the_comparison_sees_another_volume() {
     assert_ne!(of("np_i16.npy").0, of("sitk_i16.nrrd").0);
 }
 
-/// Few bytes that announce 2^40 voxels, in every way that hides their true size.
+/// Few bytes that announce 2^40 voxels, in every encoding that hides their true size.
 #[test]
 fn lying_sizes_cost_neither_time_nor_memory() {
     let folder = copies();

@@ -78,7 +78,7 @@ mod tests {
 
     /// Murray's angles are where the volume is smallest: moving the branching any way adds to it.
     #[test]
-    fn branching_angles_make_the_volume_least() {
+    fn branching_angles_minimise_the_volume() {
         let is_minimal = |cosines: [f64; 2], radii: [f64; 3]| {
             let sine = |c: f64| (1.0 - c * c).sqrt();
             let ends = [

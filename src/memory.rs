@@ -33,7 +33,7 @@ pub fn make_room<T>(elements: &mut Vec<T>, more: usize, what: impl Display) -> R
     })
 }
 
-/// `len` elements, each `value`.
+/// A vector of `len` elements, each `value`.
 ///
 /// # Errors
 /// As [`room`].

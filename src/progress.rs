@@ -15,7 +15,7 @@ pub trait Progress: Sync {
     fn end(&self);
 }
 
-/// Listens to nothing.
+/// A listener that ignores everything.
 pub struct Silent;
 
 impl Progress for Silent {
@@ -34,7 +34,7 @@ impl<'a> Stage<'a> {
         Self(progress)
     }
 
-    /// `units` more are done.
+    /// Reports that `units` more are done.
     pub fn advance(&self, units: u64) {
         self.0.advance(units);
     }

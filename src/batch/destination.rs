@@ -15,7 +15,7 @@ pub struct Shot<T> {
     /// The frame's index along the path.
     pub index: u32,
     pub frame: Frame,
-    /// Its own, as the text that pictures carry.
+    /// The frame's scene, as the text that pictures carry.
     pub scene: String,
     /// The record of it that the caller wants back.
     pub about: T,
@@ -51,7 +51,7 @@ pub enum Destination {
 /// volume, device or program is taken for a finished one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// The program's.
+    /// The version of the program.
     pub version: &'static str,
     /// The volume's [content](crate::volume::Volume::content_hash), in hexadecimal: another one may
     /// come to lie under the same name.

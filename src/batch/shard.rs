@@ -35,7 +35,8 @@ impl Shard {
         self.index
     }
 
-    /// Its share where every process of `outer` is as many processes as this one is of.
+    /// The share of `self` within a share `outer`, each of whose processes runs as many processes as
+    /// `self` counts.
     fn within(self, outer: Self) -> Result<Self> {
         let count = outer.count.checked_mul(self.count).ok_or_else(|| {
             Error::usage(format!(
@@ -46,7 +47,7 @@ impl Shard {
         Self::new(outer.index * self.count + self.index, count)
     }
 
-    /// Its frames among the first `frames`.
+    /// The frames of this share among the first `frames`.
     pub fn frames(self, frames: u32) -> impl Iterator<Item = u32> {
         (self.index..frames).step_by(self.count as usize)
     }
@@ -58,7 +59,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// `--shard`.
+/// The choice by `--shard`: a given share, or that of the environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
     Given(Shard),

@@ -60,7 +60,7 @@ impl DeviceOptions {
     }
 }
 
-/// `--device`.
+/// The device's name, as given by `--device`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceName(String);
 
@@ -83,7 +83,7 @@ impl FromStr for DeviceName {
     }
 }
 
-/// `--work-group`: `WxH` work items.
+/// The size of a work group, as given by `--work-group`: `WxH` work items.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkGroup([usize; 2]);
 
@@ -125,7 +125,7 @@ pub struct Rendered {
     /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
-    /// Where gradients were precomputed.
+    /// The cost and error of the gradients, if they were precomputed.
     pub gradients: Option<GradientFigures>,
     pub device_bytes: u64,
     /// The bytes uploaded from host to device.

@@ -12,7 +12,7 @@ pub struct Carried {
     pub format: Format,
     /// The scene, as the text of a scene file.
     pub scene: String,
-    /// The program's.
+    /// The version of the program that made the picture.
     pub version: Option<String>,
     /// The hash of the volume's content, in hexadecimal.
     pub content: Option<String>,

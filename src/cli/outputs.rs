@@ -322,7 +322,7 @@ impl FromStr for Layers {
     }
 }
 
-/// `--bit-depth`.
+/// The bits per channel, as given by `--bit-depth`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits(BitDepth);
 

@@ -328,7 +328,7 @@ impl FromStr for GridSize {
     }
 }
 
-/// `--type`.
+/// The voxel type, as given by `--type`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelName(VoxelType);
 
@@ -346,7 +346,7 @@ impl FromStr for VoxelName {
     }
 }
 
-/// `--seed`.
+/// The seed, as given by `--seed`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seed(pub u64);
 

@@ -42,7 +42,7 @@ pub struct VolumeStats {
     pub kind: &'static str,
     pub spacing_mm: [f64; 3],
     pub origin_mm: [f64; 3],
-    /// Rows of the matrix whose columns are the index axes' directions.
+    /// The rows of the matrix whose columns are the index axes' directions.
     pub direction: [[f64; 3]; 3],
     pub range: [f64; 2],
     pub non_finite: u64,
@@ -89,7 +89,7 @@ pub struct Times {
     pub octree: f64,
     /// Telling from the octree what can be left out.
     pub classify: f64,
-    /// Kernel compilation.
+    /// Time of kernel compilation, ms.
     pub build: f64,
     pub upload: f64,
     /// Computing and uploading precomputed gradients.
@@ -144,7 +144,7 @@ pub struct OrbitStats<'a> {
 pub struct OrbitFigures {
     pub frames: u32,
     pub degrees: f64,
-    /// Unit, world space.
+    /// The unit axis of the orbit, world space.
     pub axis: [f64; 3],
     /// Frames that were there already.
     pub kept: usize,

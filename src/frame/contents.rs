@@ -15,7 +15,7 @@ use super::wanted::Wanted;
 pub struct Frame {
     /// The size in pixels.
     pub size: ImageSize,
-    /// Linear light, premultiplied, without background.
+    /// The colour: linear light, premultiplied, without background.
     pub color: Vec<[f32; 4]>,
     /// sRGB-encoded 0..1, opaque, after background and tone curve: what display formats hold.
     pub display: Option<Vec<[f32; 4]>>,

@@ -108,7 +108,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// Nothing where no process can be started.
+    /// Starts a process that builds kernels; `None` if none can be started.
     fn start(arranged: &Arranged) -> Option<Self> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);

@@ -30,7 +30,7 @@ impl fmt::Display for DeviceKind {
 /// The properties of a device that `angioray devices` prints.
 #[derive(Debug, Clone)]
 pub struct DeviceInfo {
-    /// Its place in the list of all platforms' devices: `--device ID`.
+    /// The device's place in the list of all platforms' devices: `--device ID`.
     pub id: usize,
     /// The device's name.
     pub name: String,
@@ -44,7 +44,7 @@ pub struct DeviceInfo {
     pub kind: DeviceKind,
     /// How many of its units compute at once.
     pub compute_units: u32,
-    /// Its whole memory.
+    /// The size of the device's memory, bytes.
     pub memory_bytes: u64,
     /// The most memory that it gives in one piece.
     pub max_allocation_bytes: u64,

@@ -265,7 +265,7 @@ fn compile(device: &Device, program: &Program, options: &CString) -> core::Resul
     core::build_program(program, Some(&[device.device_id()]), options, None, None)
 }
 
-/// The compiler's first lines.
+/// The error of a program that does not build: the compiler's first lines.
 fn not_built(device: &Device, program: &Program, path: &str, error: &core::Error) -> Error {
     let log = core::get_program_build_info(program, device.device_id(), ProgramBuildInfo::BuildLog)
         .map(|log| log.to_string())

@@ -37,7 +37,7 @@ impl Leaf {
         }
     }
 
-    /// Cells along an edge.
+    /// The number of cells along an edge.
     pub fn edge(self) -> u32 {
         self.0
     }

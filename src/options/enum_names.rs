@@ -3,7 +3,7 @@
 use super::text_form::text_form;
 use crate::scene::enum_names::enum_names;
 
-/// `--shading`.
+/// The shading of a surface or a medium (`--shading`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shading {
     None,
@@ -12,7 +12,7 @@ pub enum Shading {
 }
 enum_names!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "blinn-phong");
 
-/// `--gradient`.
+/// The method by which gradients are computed (`--gradient`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GradientMethod {
     #[default]

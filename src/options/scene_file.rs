@@ -29,7 +29,7 @@ pub struct SceneFile {
 
 /// Where the files are that a scene names.
 enum Named {
-    /// Relative to this folder.
+    /// They are relative to this folder.
     In(PathBuf),
     /// They are where the picture's maker named them, else beside this picture, else in the working
     /// folder.

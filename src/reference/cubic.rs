@@ -41,7 +41,7 @@ impl Cubic {
         ])
     }
 
-    /// `Σ weights[i] · cubics[i]`.
+    /// The linear combination `Σ weights[i] · cubics[i]`.
     pub fn combine(cubics: &[Self; 3], weights: [f64; 3]) -> Self {
         let coefficient = |k: usize| (0..3).fold(0.0, |sum, i| sum + weights[i] * cubics[i].0[k]);
         Self([0, 1, 2, 3].map(coefficient))
@@ -153,7 +153,7 @@ impl Cubic {
     }
 }
 
-/// Within their range, too.
+/// The mean of three values, never outside their range.
 fn mean_of_three(values: [f64; 3]) -> f64 {
     let [a, b, c] = values;
     let mean = (a + b + c) / 3.0;

@@ -39,11 +39,11 @@ const DARK: f64 = 1e-12;
 /// The light that a ray receives from an emitting, absorbing medium.
 #[derive(Debug, Clone, Copy)]
 pub struct Emitted {
-    /// Premultiplied linear light.
+    /// The colour: premultiplied linear light.
     pub color: [f64; 3],
     /// exp(−∫κ) over the whole interval, or below [`DARK`].
     pub transmittance: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub walked: u32,
 }
 

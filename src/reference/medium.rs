@@ -7,7 +7,7 @@ use crate::scene::{Knot, TransferFunction};
 #[derive(Debug, Clone, Copy)]
 pub struct Ramp {
     from: f64,
-    /// 0: constant.
+    /// The width of the ramp in values; 0 if it is constant.
     width: f64,
     below: Knot,
     above: Knot,

@@ -14,7 +14,7 @@ pub struct Projected {
     pub value: f64,
     /// Where it is first reached, from the interval's start; +∞ for the mean.
     pub at_mm: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub walked: u32,
 }
 

@@ -28,9 +28,9 @@ impl Lighting {
         }
     }
 
-    /// Linear light reflected by a point of base colour `color`:
-    /// `color·(ambient + diffuse·max(n·l, 0)) + specular·s`, after n is turned to the viewer.
-    /// A point that faces away from the light has no specular term.
+    /// The linear light reflected by a point of base colour `color`: `color·(ambient + diffuse·max(n·l,
+    /// 0)) + specular·s`, after n is turned to the viewer. A point that faces away from the light has no
+    /// specular term.
     pub fn reflect(&self, color: [f64; 3], normal: DVec3) -> [f64; 3] {
         let p = &self.phong;
         let n = if normal.dot(self.to_viewer) < 0.0 {

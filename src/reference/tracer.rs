@@ -25,17 +25,17 @@ const NOISE_SHARE: f64 = 1e-13;
 /// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayResult {
-    /// Linear light, premultiplied, without background.
+    /// The colour: linear light, premultiplied, without background.
     pub color: [f64; 4],
     /// Distance from the ray's origin, mm; +∞ if it meets nothing. For a medium the mean, if it was
     /// requested.
     pub depth_mm: f64,
-    /// Unit, world space, toward lower values; 0 where there is none. For a medium the mean's direction, if
-    /// it was requested.
+    /// The unit normal, world space, toward lower values; 0 if there is none. For a medium the mean's
+    /// direction, if it was requested.
     pub normal_world: DVec3,
     /// Φ at the hit, the projected value, or for a medium the mean, if it was requested; physical.
     pub value: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub cells: u32,
     /// The kind of thing that the ray meets.
     pub kind: Kind,

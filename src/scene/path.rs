@@ -15,7 +15,7 @@ use crate::number_text::numbers;
 /// C-arm turns: where the eye is raised it stays as high, and the patient upright.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum OrbitAxis {
-    /// Up in the first frame's picture, at a right angle to its line of sight.
+    /// The axis points up in the first frame's picture, at a right angle to its line of sight.
     #[default]
     Up,
     /// The axis points to the right in the first frame's picture.

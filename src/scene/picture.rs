@@ -22,7 +22,7 @@ pub enum Picture {
         refine: Refine,
         /// The surface's colour, linear light.
         color: Rgb,
-        /// `None`: the colour alone.
+        /// The shading; `None`: the colour alone.
         phong: Option<Phong>,
     },
     /// `mip`, `minip`, `mean`, `lmip`: one value per ray, shown through a window.

@@ -22,7 +22,7 @@ pub enum Traverse {
     Uniform,
     /// A descent from the root after every node (stackless; Lesar et al. 2015).
     KdRestart,
-    /// Up and down from the present node.
+    /// A walk up and down from the present node.
     Hierarchical,
     /// Top down, each node on the way once, its children in the order of the ray (Revelles et al.
     /// 2000, in integers, so that rounding cannot change the order).

@@ -90,7 +90,7 @@ pub enum NonFinite {
     /// Count them and read them as the smallest finite value of the volume.
     #[default]
     Replace,
-    /// Fail.
+    /// An error is returned.
     Refuse,
 }
 

@@ -66,7 +66,7 @@ impl CompareOptions {
     }
 }
 
-/// `--modes`.
+/// The modes given by `--modes`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Modes(Vec<Mode>);
 

@@ -32,7 +32,7 @@ pub struct OrbitRunner<'a> {
 
 /// The frames that were made.
 pub struct OrbitOutcome {
-    /// Under the setting that was chosen, where one was.
+    /// The frames, under the setting that was chosen if one was.
     pub frames: Frames,
     pub chosen: Option<Choice>,
     pub written: Vec<Written<FrameRecord>>,

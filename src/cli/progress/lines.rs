@@ -24,7 +24,7 @@ struct Shared {
 }
 
 struct State {
-    /// The outermost first.
+    /// The stages in work, the outermost first.
     stages: Vec<Stage>,
     /// When the last line was written; before the first, when there was something to say.
     last: Option<Instant>,

@@ -20,11 +20,11 @@ use super::Frame;
 pub enum AnimationFormat {
     /// GIF: at most 256 colours a frame, repeated for ever.
     Gif,
-    /// Lossless, repeated for ever.
+    /// APNG: lossless, repeated for ever.
     Apng,
-    /// H.264, by ffmpeg.
+    /// MP4: H.264, by ffmpeg.
     Mp4,
-    /// VP9, by ffmpeg.
+    /// WebM: VP9, by ffmpeg.
     WebM,
 }
 

@@ -9,8 +9,8 @@ use super::pairing::displays;
 use super::spread::Spread;
 use crate::frame::Frame;
 
-/// Over the sRGB-encoded R, G and B of all pixels, in 0..1, before rounding to a file's levels:
-/// three differences a pixel, each of them one entry.
+/// The error of colours, over the sRGB-encoded R, G and B of all pixels, in 0..1, before rounding to a
+/// file's levels: three differences a pixel, each of them one entry.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ColorError {
     /// The root mean square of the differences.

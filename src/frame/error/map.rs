@@ -70,7 +70,7 @@ pub struct ErrorMap {
     pub quantity: Quantity,
     /// The size of the two pictures.
     pub size: ImageSize,
-    /// Row 0 at the top, x fastest, in [`Quantity::unit`].
+    /// The entries, row 0 at the top, x fastest, in [`Quantity::unit`].
     pub entries: Vec<Entry>,
     /// The difference, positive or negative, that gets the palette's last colour; larger ones get
     /// it too. Positive and finite; two maps are comparable by eye if theirs is the same.
@@ -78,9 +78,8 @@ pub struct ErrorMap {
 }
 
 impl ErrorMap {
-    /// Its scale is the 99th percentile of the absolute differences that are not 0: a few
-    /// outliers do not make all else look alike, and a few differences are not lost among many
-    /// equal pixels. It is at least [`Quantity::min_scale`].
+    /// Compares the planes of a quantity. The map's scale is the 99th percentile of the absolute
+    /// differences that are not 0: a few outliers do not make all else look alike.
     ///
     /// # Errors
     /// Those of [`super::color_error`], [`super::depth_error`], [`super::normal_error`] or

@@ -33,7 +33,7 @@ pub const ORDERS: [(QuadratureMethod, f64); 6] = [
     (QuadratureMethod::Preintegrated, 2.0),
 ];
 
-/// Below this rounding decides, in sums of few panels.
+/// The error below which rounding decides, in sums of few panels.
 pub const FLOOR_OF_FEW: f64 = 4e-7;
 /// The rounding error of a sum of many panels.
 const FLOOR_OF_MANY: f64 = 3e-6;
@@ -45,7 +45,7 @@ pub struct Smooth {
     toward: DVec3,
     /// The path's length in edges of the cell.
     edges: f64,
-    /// Premultiplied colour and opacity.
+    /// The exact result: premultiplied colour and opacity.
     pub reference: [f64; 4],
 }
 
@@ -83,7 +83,8 @@ impl Smooth {
         Self::new("ramp", |n| (n & 1) as f32, DVec3::X, |s| s)
     }
 
-    /// Along the diagonal: the Bézier ordinates are the means of the corners with 0, 1, 2, 3 ones.
+    /// A cubic field along the diagonal: the Bézier ordinates are the means of the corners with 0, 1, 2,
+    /// 3 ones.
     ///
     /// # Errors
     /// As [`Smooth::ramp`].

@@ -18,7 +18,7 @@ use crate::volume::{
 pub struct Dataset {
     pub name: String,
     pub volume: Volume,
-    /// Physical.
+    /// The iso value, physical.
     pub iso: f64,
 }
 

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 
 use super::Preset;
 
-/// `--protocol`.
+/// How the camera moves while frames are timed (`--protocol`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Protocol {
     /// The camera stays where it is.

@@ -22,7 +22,7 @@ pub struct Configs {
     settings: Vec<Config>,
 }
 
-/// More are no comparison that anyone waits for.
+/// The most settings: more would take too long to compare.
 const MAX_SETTINGS: usize = 256;
 
 const HINT: &str = "write [[setting]], a name, and keys such as step = 0.5";

@@ -52,12 +52,12 @@ impl Folder {
         self.path.join("results.json")
     }
 
-    /// The rows' figures.
+    /// The path of the rows' figures.
     pub fn csv(&self) -> PathBuf {
         self.path.join("results.csv")
     }
 
-    /// The page.
+    /// The path of the report page.
     pub fn report(&self) -> PathBuf {
         self.path.join("report.html")
     }

@@ -19,7 +19,7 @@ pub struct Row {
     pub renderer: String,
     /// The flags of the setting; empty of a peer.
     pub flags: String,
-    /// Its method of following rays: points of one family have one colour in plots.
+    /// The family of the setting: points of one family have one colour in plots.
     pub family: String,
     /// Why there is no picture.
     pub failure: Option<String>,
@@ -58,7 +58,7 @@ pub struct RowTimes {
     pub gradient: Option<f64>,
     /// Time of what a peer does once for the scene, ms.
     pub prepare: Option<f64>,
-    /// Writing the PNG.
+    /// Time to write the PNG, ms.
     pub encode: Option<f64>,
 }
 

@@ -71,7 +71,7 @@ impl HardCase {
         self.members.len().max(1)
     }
 
-    /// Its volume number `member`, from 0 to [`HardCase::count`].
+    /// The case's volume number `member`, from 0 to [`HardCase::count`].
     ///
     /// # Errors
     /// Usage: there is no such member. Failed: there is not enough memory.

@@ -14,7 +14,7 @@ use crate::volume::Volume;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     pub kind: Kind,
-    /// mm from the ray's origin; +∞: nothing.
+    /// Distance from the ray's origin, mm; +∞: nothing.
     pub depth_mm: f64,
 }
 
@@ -358,9 +358,9 @@ struct Nearby {
 /// A small change of a ray and of the iso value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Off {
-    /// World space, mm.
+    /// The offset of the ray, world space, mm.
     by: DVec3,
-    /// Physical.
+    /// The iso value, physical.
     iso: f64,
 }
 

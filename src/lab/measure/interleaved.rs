@@ -8,7 +8,7 @@ use crate::frame::{median, percentile};
 /// The times of the repeats of one setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Times {
-    /// One a round, ms.
+    /// The times, one a round, ms.
     rounds: Vec<f64>,
 }
 

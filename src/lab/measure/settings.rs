@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::options::Setting;
 use crate::scene::Mode;
 
-/// Voxels, coarse to fine.
+/// The steps, in voxels, coarse to fine.
 const STEPS: [&str; 4] = ["2", "1", "0.5", "0.25"];
 const REFINERS: [&str; 5] = [
     "regula-falsi:5",

@@ -63,7 +63,7 @@ pub struct PairedPicture {
     pub mode: String,
     /// The number of the section in the report.
     pub section: usize,
-    /// Its label in that section's gallery.
+    /// The picture's label in that section's gallery.
     pub label: String,
 }
 
@@ -139,7 +139,7 @@ pub struct Scatter {
 /// The quantity along an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
-    /// `time`.
+    /// The name of what the axis shows, such as `time`.
     pub label: String,
     /// `ms`; empty where the figure has none.
     pub unit: String,
@@ -163,7 +163,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
     pub title: String,
-    /// `ms`.
+    /// The unit, such as `ms`.
     pub unit: String,
     pub rows: Vec<Bar>,
 }

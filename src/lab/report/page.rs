@@ -11,7 +11,8 @@ use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
-/// Nothing is fetched from anywhere: images are in the file, style and script too.
+/// The page's content security policy: nothing is fetched from anywhere, as images, style and scripts
+/// are in the file.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 

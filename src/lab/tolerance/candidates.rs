@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::options::Setting;
 use crate::scene::Mode;
 
-/// Voxels, coarse to fine.
+/// The steps, in voxels, coarse to fine.
 const STEPS: [&str; 6] = ["4", "2", "1", "0.5", "0.25", "0.125"];
 /// How a hit is refined: not at all, or as it is by default. What lies between costs as much.
 const REFINERS: [&str; 2] = ["none", "regula-falsi:5"];

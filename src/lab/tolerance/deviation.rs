@@ -11,11 +11,11 @@ use crate::volume::Volume;
 /// pictures are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// Display, 0..1.
+    /// The displayed colour, 0..1.
     rgb: [f32; 3],
-    /// mm; +∞: no hit.
+    /// The depth, mm; +∞: no hit.
     depth: f32,
-    /// Physical.
+    /// The value, physical.
     value: f32,
     /// Whether the pixel shows anything.
     covered: bool,

@@ -86,7 +86,7 @@ pub struct Choice {
 /// Upon what a choice was verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
-    /// Places of the camera.
+    /// The number of places of the camera.
     pub views: usize,
     /// Fresh random ones; none where the tiles before were the whole picture.
     pub tiles: usize,

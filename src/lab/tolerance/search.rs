@@ -46,7 +46,7 @@ struct Chosen {
 
 /// Another place of the camera, and what is known there once it was visited.
 struct View<'a> {
-    /// Under the surest setting.
+    /// The scene under the surest setting.
     scene: &'a Scene,
     evidence: Option<Evidence<'a>>,
 }

@@ -17,7 +17,7 @@ impl Lanes {
     /// Every number of rays, ascending.
     pub const ALL: [Self; 3] = [Self::ONE, Self(8), Self(16)];
 
-    /// So many rays.
+    /// A number of rays side by side.
     ///
     /// # Errors
     /// Another number than those of [`Lanes::ALL`].

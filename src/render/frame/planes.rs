@@ -10,7 +10,7 @@ use crate::volume::Rescale;
 
 /// Planes of a picture on the device.
 pub struct Planes {
-    /// Linear light, premultiplied.
+    /// The colour: linear light, premultiplied.
     pub color: Buffer<[f32; 4]>,
     /// The picture as it is displayed, where that is wanted.
     pub display: Option<Buffer<[f32; 4]>>,

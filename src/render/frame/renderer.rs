@@ -61,7 +61,8 @@ pub struct Rendering {
     pub upload_ms: f64,
     /// Time to find from ranges of values what can be left out; 0 where it was known from an earlier frame.
     pub classify_ms: f64,
-    /// Bytes from host to device, for this frame; with the volume's first frame the volume too.
+    /// The bytes uploaded from host to device for this frame; with the volume's first frame the volume
+    /// too.
     pub uploaded_bytes: u64,
     /// Device time from the first launch's start to the last one's end.
     pub render_ms: f64,

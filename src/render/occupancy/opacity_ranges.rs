@@ -11,7 +11,7 @@ use crate::render::resources::Knots;
 /// A transfer function prepared for many ranges of values.
 pub struct OpacityRanges<'a> {
     knots: &'a Knots,
-    /// Bins a stored unit.
+    /// The number of bins per stored unit.
     per_unit: f64,
     /// `first[b]`: how many knots lie in bins before b.
     first: Vec<u32>,
@@ -60,7 +60,7 @@ impl<'a> OpacityRanges<'a> {
         ranges
     }
 
-    /// Never falls as the value grows.
+    /// The bin of a value, which never falls as the value grows.
     fn bin(&self, value: f32) -> usize {
         let from_first = f64::from(value) - f64::from(self.knots.values[0]);
         ((from_first * self.per_unit) as usize).min(BINS - 1)

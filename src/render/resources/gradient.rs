@@ -29,7 +29,7 @@ pub struct DeviceDirections {
     /// Their cost and error.
     pub figures: GradientFigures,
     directions: Buffer<i16>,
-    /// Along x, y, z; voxels between two.
+    /// The number of directions along x, y, z, and the voxels between two.
     grid: [u32; 4],
 }
 
@@ -92,7 +92,7 @@ impl<'a> DeviceGradient<'a> {
         }
     }
 
-    /// Adds the constant.
+    /// Adds the constant of the gradient's kind.
     pub fn define(self, defines: Defines) -> Defines {
         let gradient = match self {
             Self::Differences(gradient) => gradient,

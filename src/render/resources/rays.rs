@@ -14,9 +14,9 @@ use crate::volume::Volume;
 /// A ray of its own, in index space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IndexRay {
-    /// Its origin.
+    /// The ray's origin.
     pub origin: [f32; 3],
-    /// Its direction, of any length: t counts its lengths.
+    /// The ray's direction, of any length: t counts its lengths.
     pub dir: [f32; 3],
     /// The part of it that is cast: from `t_min`, not negative, to `t_max`, which may be +∞.
     pub t: [f32; 2],

@@ -7,9 +7,9 @@ use crate::volume::Volume;
 /// The knots of a transfer function, ascending in value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Knots {
-    /// Stored units.
+    /// The knots' values, in stored units.
     pub values: Vec<f32>,
-    /// Linear light; the opacity of the unit length in the last channel.
+    /// The knots' colours in linear light, with the opacity of the unit length in the last channel.
     pub colors: Vec<[f32; 4]>,
 }
 

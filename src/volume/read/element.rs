@@ -141,7 +141,7 @@ impl<T> From<Vec<T>> for Converted
 where
     Voxels: From<Vec<T>>,
 {
-    /// The file's own numbers.
+    /// Takes the file's own numbers.
     fn from(voxels: Vec<T>) -> Self {
         Self {
             voxels: voxels.into(),

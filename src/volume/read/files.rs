@@ -16,9 +16,9 @@ const LONGEST_NAMES: usize = 1 << 23;
 /// Where a header says its voxels are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum DataFiles {
-    /// Right after the header.
+    /// The data follow the header in the same file.
     Attached,
-    /// In files beside the header, one after the other.
+    /// The data are in files beside the header, one after the other.
     Files(Vec<String>),
 }
 

@@ -81,9 +81,9 @@ impl BufRead for MappedBytes {
 
 /// Bytes from a header's end (or a data file's start) on.
 pub(super) enum Payload {
-    /// They lie in a file as they are.
+    /// The bytes lie in a file unchanged.
     Mapped(MappedBytes),
-    /// They come out of a decoder; no more than `at_most`.
+    /// The bytes come out of a decoder; no more than `at_most`.
     Stream {
         reader: Box<dyn BufRead>,
         at_most: u64,

@@ -34,7 +34,7 @@ impl RawLayout {
         *self != Self::default()
     }
 
-    /// Each field that is absent taken from `other`.
+    /// Fills each absent field from `other`.
     fn or(self, other: Self) -> Self {
         Self {
             size: self.size.or(other.size),

@@ -48,7 +48,7 @@ pub(super) struct TextNumbers<R> {
 }
 
 impl<R: BufRead> TextNumbers<R> {
-    /// Longer words are no numbers.
+    /// The longest word that can be a number.
     const LONGEST_WORD: usize = 400;
 
     pub(super) fn new(text: R, scalar: Scalar) -> Self {

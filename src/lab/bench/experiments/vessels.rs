@@ -25,11 +25,11 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// Voxels.
+/// The vessels' radii, in voxels.
 const RADII: [f64; 4] = [0.5, 0.75, 1.0, 2.5];
 /// The number of vessels in each volume.
 const VESSELS: usize = 8;
-/// Voxels.
+/// The steps, in voxels.
 const STEPS: [f64; 4] = [2.0, 1.0, 0.5, 0.25];
 const REFINERS: [&str; 5] = [
     "none",

@@ -35,7 +35,7 @@ pub struct Measurement {
 pub struct SurfaceError {
     pub missed_share: Option<f64>,
     pub extra_share: Option<f64>,
-    /// Voxels.
+    /// The mean depth error, in voxels.
     pub depth_mean: Option<f64>,
     pub depth_p99: Option<f64>,
     pub depth_max: Option<f64>,

@@ -36,7 +36,7 @@ pub struct Peer {
     version: String,
     device: String,
     settings: Vec<OfferedSetting>,
-    /// Voxels on their way there, planes on their way back.
+    /// The folder for voxels that are sent and planes that come back.
     folder: TempDir,
     /// How many scenes it was requested to prepare.
     scenes: u64,
@@ -76,13 +76,13 @@ pub struct PeerTime {
 #[derive(Debug, Clone)]
 pub struct PeerFrame {
     pub time: PeerTime,
-    /// Its colour, the display computed from it by the scene's tone curve, and the depth where the peer
-    /// writes it.
+    /// The picture: its colour, the display computed from it by the scene's tone curve, and the depth if
+    /// the peer writes it.
     pub frame: Frame,
 }
 
 impl Peer {
-    /// Longer than any picture, load or mesh should take.
+    /// The time limit of an answer: longer than any picture, load or mesh should take.
     pub const PATIENCE: Duration = Duration::from_secs(300);
 
     /// Starts a peer and reads what it is; `command` is written as for a POSIX shell.
@@ -117,7 +117,7 @@ impl Peer {
         })
     }
 
-    /// Such as `vtk`.
+    /// The peer's name, such as `vtk`.
     pub fn name(&self) -> &str {
         &self.name
     }

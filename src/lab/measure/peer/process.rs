@@ -153,7 +153,7 @@ impl Process {
         self.failed(&format!("{how} where it was to {doing}{last}"))
     }
 
-    /// Its exit status, if it ends within `time`.
+    /// Waits for the peer's exit status, for `time` at most.
     fn wait(&mut self, time: Duration) -> Option<std::process::ExitStatus> {
         let start = Instant::now();
         loop {
@@ -165,7 +165,7 @@ impl Process {
         }
     }
 
-    /// Ends it now.
+    /// Ends the peer now.
     fn stop(&mut self) {
         self.requests = None;
         // It may have ended already, which is as good.
@@ -175,7 +175,7 @@ impl Process {
 }
 
 impl Drop for Process {
-    /// Its input ends; a peer that does not leave then is made to.
+    /// Closes the peer's input; a peer that does not end then is killed.
     fn drop(&mut self) {
         self.requests = None;
         if self.over.is_none() {

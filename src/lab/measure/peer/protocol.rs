@@ -30,7 +30,7 @@ impl Request {
     }
 }
 
-/// Voxels without header, x fastest, in the machine's byte order.
+/// The voxels' file, without header, x fastest, in the machine's byte order.
 #[derive(Serialize)]
 pub(super) struct VolumeFile {
     pub file: String,
@@ -233,7 +233,8 @@ pub(super) struct RenderRequest {
     /// R, G, B, A: linear light, premultiplied, without background.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
-    /// mm from the eye along the ray, from the eye plane in orthographic projection; +∞: none.
+    /// The file of the depth plane: mm from the eye along the ray, from the eye plane in orthographic
+    /// projection; +∞: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<String>,
 }
@@ -302,7 +303,7 @@ pub(super) struct OfferedSetting {
 
 #[derive(Deserialize)]
 pub(super) struct Loaded {
-    /// ms.
+    /// Time to load the volume, ms.
     pub loaded: f64,
 }
 
@@ -313,7 +314,7 @@ pub(super) struct Forgotten {}
 #[derive(Deserialize)]
 pub(super) struct Ready {
     pub supported: bool,
-    /// ms.
+    /// Time to prepare the scene, ms.
     #[serde(default)]
     pub ready: f64,
     /// Why it is not supported.

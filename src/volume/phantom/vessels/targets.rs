@@ -66,7 +66,7 @@ fn in_rounded_box(random: &mut Pcg64) -> DVec3 {
     DVec3::ZERO
 }
 
-/// Uniform in [-1, 1]³.
+/// A uniformly distributed point in [-1, 1]³.
 pub(super) fn uniform_box(random: &mut Pcg64) -> DVec3 {
     let mut side = || random.random::<f64>() * 2.0 - 1.0;
     let (x, y, z) = (side(), side(), side());

@@ -17,7 +17,7 @@ pub const MURRAY_EXPONENT: f64 = 3.0;
 /// all along.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VesselSegment {
-    /// Its place in [`VesselTree::segments`].
+    /// The segment's index in [`VesselTree::segments`].
     pub id: usize,
     /// The segment at whose end this one starts; the root has none.
     pub parent: Option<usize>,

@@ -22,7 +22,7 @@ fn rules(preset: Preset) -> &'static [&'static str] {
         Preset::Usual | Preset::Full => &["preintegrated", "midpoint", "simpson"],
     }
 }
-/// Voxels.
+/// The steps that are tried, in voxels.
 const STEPS: [f64; 7] = [1.0, 0.75, 0.5, 0.33, 0.25, 0.16, 0.12];
 /// The rule that is taken where none of them does: it has no step.
 const SUREST: &str = "adaptive:0.001";

@@ -50,7 +50,7 @@ pub struct TimedRow {
     pub error: Option<PictureError>,
     /// How a peer's picture differs otherwise.
     pub note: Option<String>,
-    /// A round each.
+    /// The times, one a round.
     pub taken: Vec<Taken>,
 }
 

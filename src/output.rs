@@ -263,7 +263,7 @@ mod tests {
         fs::write(root.join("file"), "x").unwrap();
         fs::create_dir(root.join("sub")).unwrap();
         let cases = [
-            (root.join("missing/a.txt"), "there is no folder"),
+            (root.join("missing/a.txt"), "does not exist"),
             (root.join("file/a.txt"), "is not a folder"),
             (root.join("sub"), "this is a folder"),
             (root.join(".."), "this is a folder"),
@@ -328,7 +328,7 @@ mod tests {
         assert_eq!(proc.hint_text(), None);
         // The control.
         let missing = said("/proc/none/a.png");
-        assert!(missing.to_string().contains("no folder"), "{missing}");
+        assert!(missing.to_string().contains("does not exist"), "{missing}");
         assert!(missing.hint_text().is_some());
     }
 

@@ -90,7 +90,7 @@ group! {
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
-        /// Forget what a run that was stopped has left in the folder
+        /// Discard what a stopped run has left in the folder
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on")]
         restart: Switch,

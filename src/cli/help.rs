@@ -37,7 +37,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "gradient-smooth", "Sigma of smoothing before precomputed gradients"),
     ("", "clip-plane", "Keep what lies on this side of a plane; up to 64 times"),
     ("", "sampling", "exact, solving every cell, or at fixed steps"),
-    ("", "probe", "Fixed steps: look for peaks between samples [default: on]"),
+    ("", "probe", "Fixed steps: search for peaks between samples [default: on]"),
     ("", "max-error", "Choose the cheapest sampling within this error"),
     ("", "azimuth", "Turn the eye to the picture's right [default: 0]"),
     ("", "ortho", "Orthographic, the picture being this high"),
@@ -55,7 +55,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("bench", "output", "A folder for the table and the report"),
     ("bench", "frames", "How often each mode is timed in the experiment speed"),
     ("bench", "peer", "Another renderer to time in the experiment speed"),
-    ("bench", "restart", "Forget what a stopped run left in the folder"),
+    ("bench", "restart", "Discard what a stopped run left in the folder"),
 ];
 
 /// The program as it reads its arguments and explains itself.
@@ -231,7 +231,7 @@ mod tests {
             let name = command.get_name().to_owned();
             let short = command.render_help().to_string();
             let whole = command.render_long_help().to_string();
-            let end = format!("All of it: angioray {name} --help");
+            let end = format!("Full help: angioray {name} --help");
             assert!(short.trim_end().ends_with(&end), "{short}");
             for option in command.get_arguments() {
                 let Some(long) = option.get_long() else {

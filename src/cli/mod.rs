@@ -58,7 +58,7 @@ struct Arguments {
 group! {
     /// How much the program says.
     pub struct Voice {
-        /// Say nothing but errors: no notes, no progress, no names of written files
+        /// Print only errors: no notes, no progress, no names of written files
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on", global = true, help_heading = None::<&str>)]
         quiet: Switch,

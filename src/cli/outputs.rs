@@ -23,9 +23,9 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, with commas between, or all that the mode has. In dvr depth, normal and value are
-        /// means along the ray, weighted as its light is, where the opacity is 0.01 at least. certificate
-        /// goes with iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device
+        /// certificate, separated by commas, or all that the mode has. In dvr depth, normal and value are
+        /// means along the ray, weighted as its light is, where the opacity is at least 0.01. certificate
+        /// is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device
         /// prove nothing: 2 everywhere
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,

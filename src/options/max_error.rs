@@ -10,7 +10,7 @@ group! {
     /// The options by which the program decides how rays are followed.
     #[command(next_help_heading = "Sampling")]
     pub struct ToleranceOptions {
-        /// Follow rays in the cheapest way whose error, against the double-precision reference, is
+        /// Follow rays by the cheapest setting whose error, against the double-precision reference, is
         /// within BOUND: rmse, max (1/255), p99, psnr (dB, at least) of the colours; in iso depth
         /// (voxels) and missed (a share, 0.1%) hits; in projections value (a share of the value
         /// range). Found by a probe and verified; takes the place of --sampling, --step, --probe,

@@ -20,7 +20,7 @@ impl Setting {
     /// Parses the text of a scene file; `name` is what tables call the setting.
     ///
     /// # Errors
-    /// Usage: what the text says is wrong, or a key says what is seen rather than how.
+    /// Usage: what the text says is wrong, or a key changes what is shown rather than how.
     pub fn parse(name: impl Into<String>, text: &str) -> Result<Self> {
         let name = name.into();
         let options = SceneOptions::parse(text, &format!("setting '{name}'"))?;
@@ -30,7 +30,7 @@ impl Setting {
     /// Makes a setting of options that say nothing but how rays are followed.
     ///
     /// # Errors
-    /// Usage: an option says what is seen rather than how.
+    /// Usage: an option changes what is shown rather than how.
     pub fn new(name: impl Into<String>, options: SceneOptions) -> Result<Self> {
         let name = name.into();
         let what = |option: &&String| !is_how(option);
@@ -111,7 +111,7 @@ mod tests {
         for text in ["iso = 4", "azimuth = 3", "mode = 'mip'", "window = [0, 1]"] {
             let refused = Setting::parse("x", text).unwrap_err();
             assert!(
-                refused.to_string().contains("says what is seen"),
+                refused.to_string().contains("changes what is shown"),
                 "{refused}"
             );
         }

@@ -326,7 +326,7 @@ fn wrong_usage_is_refused_before_the_work() {
         (
             "compare ball.nrrd -o out --configs bad.toml",
             2,
-            "'iso' says what is seen",
+            "'iso' changes what is shown",
         ),
         (
             "compare ball.nrrd -o out --configs none.toml",

@@ -35,9 +35,9 @@ use reference_cache::reference_cache;
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
-An option applies to those of the modes that it goes with: --iso and --tf can stand side by side.
+An option applies to the modes that it belongs to: --iso and --tf can be given together.
 
-What --sampling, --step, --filter and the like say is compared as one setting more, 'as given'; what
+The options --sampling, --step, --filter and the like make one more setting, 'as given'; what
 --max-error chooses is another. All are compared with the reference of the scene, in linear
 interpolation and with central differences.
 

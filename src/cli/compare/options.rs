@@ -13,11 +13,11 @@ group! {
     #[command(next_help_heading = "Comparison")]
     pub struct CompareOptions {
         /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
-        /// made where there is none
+        /// created if it does not exist
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
-        /// The modes, with commas between [default: the one of --mode, else iso,mip,lmip,dvr]
+        /// The modes, separated by commas [default: the one of --mode, else iso,mip,lmip,dvr]
         #[arg(long, value_name = "LIST")]
         modes: Modes,
 

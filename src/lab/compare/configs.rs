@@ -187,9 +187,9 @@ mod tests {
                 "file:5: 'stp'",
             ),
             ("", "there is no [[setting]]"),
-            ("[camera]\nfov = 3", "'camera' is no part"),
+            ("[camera]\nfov = 3", "'camera' is not a key"),
             ("setting = 3", "there is no [[setting]]"),
-            ("setting = [3]", "setting 1 is no table"),
+            ("setting = [3]", "setting 1 is not a table"),
             ("[[setting]]\nstep = 2", "setting 1 has no name"),
             ("[[setting]]\nname = 'a'\nmodes = 'iso'", "modes is a list"),
             (
@@ -198,7 +198,7 @@ mod tests {
             ),
             (
                 "[[setting]]\nname = 'a'\niso = 3",
-                "'iso' says what is seen",
+                "'iso' changes what is shown",
             ),
             ("[[setting]]\nname = 'a'\nstp = 3", "stp"),
             (

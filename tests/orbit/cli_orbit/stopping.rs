@@ -225,7 +225,7 @@ fn a_second_signal_ends_it_at_once_with_the_same_status() {
         let lines: Vec<&str> = said.lines().collect();
         assert_eq!(lines.len(), 2, "{output}: {said}");
         assert!(
-            lines[0].starts_with("note: stopping after the frame in work"),
+            lines[0].starts_with("note: stopping after the current frame"),
             "{said}"
         );
         assert!(lines[1].starts_with("error: stopped at once"), "{said}");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reads a million changed headers (or as many as are asked for: scripts/fuzz.sh 50000) and prints what came
+# Reads a million changed headers (or as many as are given: scripts/fuzz.sh 50000) and prints what came
 # of them, by kind of file. The test suite takes every hundredth.
 set -euo pipefail
 cd "$(dirname "$0")/.."

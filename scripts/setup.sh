@@ -85,11 +85,11 @@ leave_out_chromium() {
         return 0
     fi
     say "apt has no Chromium here (Ubuntu has a snap only): the report page's tests are skipped until one is installed"
-    local kept=() package
+    local remaining=() package
     for package in "${missing[@]}"; do
-        [ "$package" = chromium ] || kept+=("$package")
+        [ "$package" = chromium ] || remaining+=("$package")
     done
-    missing=("${kept[@]}")
+    missing=("${remaining[@]}")
     [ ${#missing[@]} -gt 0 ] || exit 0
 }
 leave_out_chromium

@@ -1,19 +1,20 @@
 //! A process that a signal kills says so in a sentence first.
 //!
 //! Drivers run their compilers' and our kernels' machine code in this process: what they abort, or do
-//! wrong with memory, ends it. Nothing can be mended then, but the user can be told what was at work, and
-//! kept files that may be the cause are removed, so that the next run begins without them.
+//! wrong with memory, ends it. Nothing can be repaired then, but a message can say what was at work, and
+//! cached files that may be the cause are removed, so that the next run begins without them.
 
 use std::path::Path;
 
-/// From now on SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and
-/// the exit code of a resource that failed. For the program's `main`: a library leaves signals to the program that uses it.
+/// Makes SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and the exit
+/// code of a resource that failed. For the program's `main`: a library leaves signals to the program
+/// that uses it.
 pub fn catch() {
     #[cfg(unix)]
     signals::catch();
 }
 
-/// What the sentence names from now on, such as `the device 'x' was at work`.
+/// Sets what the crash message names from now on, such as `the device 'x' was at work`.
 pub fn while_at_work(clause: &str) {
     #[cfg(unix)]
     signals::set_clause(clause);
@@ -21,7 +22,7 @@ pub fn while_at_work(clause: &str) {
     let _ = clause;
 }
 
-/// A kept file that is removed if a signal ends the process: it may be the cause, and can be made again.
+/// A cached file that is removed if a signal ends the process: it may be the cause, and can be made again.
 pub fn suspect(path: &Path) {
     #[cfg(unix)]
     signals::suspect(path);
@@ -40,7 +41,7 @@ mod signals {
     use crate::abrupt;
     use crate::error::ErrorKind;
 
-    /// With their names, each with a NUL at its end.
+    /// The signals and their names, each with a NUL at its end.
     const SIGNALS: [(c_int, &CStr); 5] = [
         (libc::SIGABRT, c"SIGABRT"),
         (libc::SIGILL, c"SIGILL"),
@@ -49,13 +50,13 @@ mod signals {
         (libc::SIGFPE, c"SIGFPE"),
     ];
 
-    /// More kept files than a process uses.
-    const MOST_SUSPECTS: usize = 1024;
+    /// More cached files than a process uses.
+    const MAX_SUSPECTS: usize = 1024;
 
     // What the handler reads: strings that are never freed.
     static CLAUSE: AtomicPtr<c_char> = AtomicPtr::new(null_mut());
-    static SUSPECTS: [AtomicPtr<c_char>; MOST_SUSPECTS] =
-        [const { AtomicPtr::new(null_mut()) }; MOST_SUSPECTS];
+    static SUSPECTS: [AtomicPtr<c_char>; MAX_SUSPECTS] =
+        [const { AtomicPtr::new(null_mut()) }; MAX_SUSPECTS];
     static CATCHING: AtomicBool = AtomicBool::new(false);
     static SUSPECTS_SET: AtomicUsize = AtomicUsize::new(0);
 
@@ -119,7 +120,7 @@ mod signals {
         };
         let hint = match (removed, while_.is_empty()) {
             (true, _) => {
-                "hint: the kept kernels that were in use are removed: the same command builds them again\n"
+                "hint: the cached kernels that were in use are removed; the same command builds them again\n"
             }
             (false, false) => {
                 "hint: its driver failed, or memory ran out; '--device reference' needs no driver\n"

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+/// The result of anything that can fail with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Whose fault it is; decides the process's exit code.
@@ -98,7 +99,7 @@ impl Error {
     }
 
     /// A failed read of the input `path`; `doing` says of what (`read the scene`). An input that is not
-    /// there, or may not be read, is [`ErrorKind::Input`]; a disk or network that failed on the way is
+    /// there, or may not be read, is [`ErrorKind::Input`]; a disk or network that failed meanwhile is
     /// [`ErrorKind::Resource`].
     pub fn reading(path: &Path, doing: &str, cause: &io::Error) -> Self {
         use io::ErrorKind::*;
@@ -110,29 +111,31 @@ impl Error {
         Self::new(kind, format!("{}: cannot {doing}: {cause}", path.display()))
     }
 
-    /// A failed write of `path`, or of what is kept there; `doing` says of what (`make the folder`).
+    /// A failed write of `path`, or of what is stored there; `doing` says of what (`make the folder`).
     pub fn writing(path: &Path, doing: &str, cause: &io::Error) -> Self {
         Self::resource(format!("{}: cannot {doing}: {cause}", path.display()))
     }
 
-    /// The same error with a hint, shown on a line of its own.
+    /// Adds a hint, shown on a line of its own.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
     }
 
-    /// The same error, its place named first: `place: message`.
+    /// Puts the place before the message: `place: message`.
     #[must_use]
     pub fn at(mut self, place: impl fmt::Display) -> Self {
         self.message = format!("{place}: {}", self.message);
         self
     }
 
+    /// The kind of the error, which decides the exit code.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
+    /// The hint, if there is one: what the user can do.
     pub fn hint_text(&self) -> Option<&str> {
         self.hint.as_deref()
     }

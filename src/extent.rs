@@ -38,11 +38,12 @@ impl Dims {
         Ok(Self(dims.map(|n| n as u32)))
     }
 
+    /// The sizes along x, y and z.
     pub fn array(self) -> [u32; 3] {
         self.0
     }
 
-    /// As array sizes.
+    /// The sizes as indices of arrays.
     pub fn usize(self) -> [usize; 3] {
         self.0.map(|n| n as usize)
     }
@@ -91,6 +92,7 @@ pub struct ImageSize {
 }
 
 impl ImageSize {
+    /// The most pixels along a side.
     pub const MAX_SIDE_PX: u32 = 65_535;
     /// The most pixels: all layers of a picture then take a few GiB.
     pub const MAX_PIXELS: u64 = 1 << 26;
@@ -101,6 +103,10 @@ impl ImageSize {
         height: 512,
     };
 
+    /// Makes the size of a picture, in pixels.
+    ///
+    /// # Errors
+    /// A side outside 1 to [`Self::MAX_SIDE_PX`], or more than [`Self::MAX_PIXELS`] in all (usage).
     pub fn new(width: u32, height: u32) -> Result<Self> {
         let side = 1..=Self::MAX_SIDE_PX;
         if !side.contains(&width)
@@ -123,14 +129,17 @@ impl ImageSize {
         Self::new(u32::try_from(pixels).unwrap_or(u32::MAX), 1)
     }
 
+    /// The width in pixels.
     pub fn width(self) -> u32 {
         self.width
     }
 
+    /// The height in pixels.
     pub fn height(self) -> u32 {
         self.height
     }
 
+    /// The number of pixels.
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }
@@ -169,20 +178,24 @@ impl fmt::Display for ImageSize {
 /// A closed range of finite values, `min <= max`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Range {
+    /// The smallest value.
     pub min: f64,
+    /// The largest value.
     pub max: f64,
 }
 
 impl Range {
+    /// The difference of the largest and the smallest value.
     pub fn width(self) -> f64 {
         self.max - self.min
     }
 
-    /// The value a fraction of the way up.
+    /// The value at a fraction of the range: `min` at 0, `max` at 1.
     pub fn at(self, fraction: f64) -> f64 {
         self.min + self.width() * fraction
     }
 
+    /// Whether a value lies in the range, its ends included.
     pub fn contains(self, value: f64) -> bool {
         self.min <= value && value <= self.max
     }

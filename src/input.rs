@@ -1,5 +1,5 @@
 //! Files that are read as text, whatever they turn out to be: a device that never ends, a pipe that
-//! nobody writes into, a file that is no text.
+//! that nothing writes to, a file that is not text.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read};
@@ -23,10 +23,10 @@ pub fn text(path: &Path, doing: &str) -> Result<String> {
     })
 }
 
-/// As [`text`], whatever its bytes are.
+/// Reads a file's bytes, whatever they are; see [`text`].
 ///
 /// # Errors
-/// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nobody writes into.
+/// It cannot be read, or is longer than [`LONGEST_TEXT`]; a pipe that nothing writes to.
 pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
     let failed = |cause: io::Error| Error::reading(path, doing, &cause);
     let refused = |why: String| Error::input(format!("{}: cannot {doing}: {why}", path.display()));
@@ -38,17 +38,17 @@ pub fn bytes(path: &Path, doing: &str) -> Result<Vec<u8>> {
         .map_err(failed)?;
     if bytes.len() as u64 > LONGEST_TEXT {
         return Err(refused(format!(
-            "it is longer than {} KiB, the most that is read of a text",
+            "it is longer than {} KiB, the most that is read from a text file",
             LONGEST_TEXT >> 10
         )));
     }
     if bytes.is_empty() && !is_file {
-        return Err(refused("it is empty, or nobody writes into it".into()));
+        return Err(refused("it is empty, or nothing writes to it".into()));
     }
     Ok(bytes)
 }
 
-/// Opens a file for reading without waiting: a pipe that nobody has opened for writing is at its end.
+/// Opens a file for reading without waiting: a pipe that no process has opened for writing is at its end.
 ///
 /// # Errors
 /// Those of opening.

@@ -39,6 +39,8 @@ pub mod abrupt;
 #[doc(hidden)]
 pub mod batch;
 #[doc(hidden)]
+pub mod cache;
+#[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
 pub mod crash;
@@ -48,8 +50,6 @@ pub mod frame;
 pub mod gpu;
 #[doc(hidden)]
 pub mod input;
-#[doc(hidden)]
-pub mod kept;
 #[doc(hidden)]
 pub mod lab;
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! Memory that may not be there. What grows with a volume or a picture is asked for here, so that the
+//! Memory that may not be there. What grows with a volume or a picture is allocated here, so that the
 //! answer no is an error and not the end; for all else the program has an [`Allocator`] that ends it
 //! with a sentence.
 
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::abrupt;
 use crate::error::{Error, ErrorKind, Result};
 
-/// An empty vector with room for `len` elements: filling it asks for no more memory. `what` says what
+/// An empty vector with room for `len` elements: filling it allocates no more memory. `what` says what
 /// it is for (`the octree`).
 ///
 /// # Errors
@@ -33,7 +33,7 @@ pub fn make_room<T>(elements: &mut Vec<T>, more: usize, what: impl Display) -> R
     })
 }
 
-/// `len` elements, each `value`.
+/// A vector of `len` elements, each `value`.
 ///
 /// # Errors
 /// As [`room`].
@@ -57,7 +57,7 @@ pub fn collected<T: Send>(
 }
 
 thread_local! {
-    /// Whether this thread has an answer to a request for memory that is refused.
+    /// Whether this thread can handle a refused request for memory.
     static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -68,9 +68,9 @@ fn may_fail<T>(request: impl FnOnce() -> T) -> T {
     answer
 }
 
-/// The system's allocator, but that a refused request of which nobody makes an error ends the process
+/// The system's allocator, but that a refused request that is not turned into an error ends the process
 /// with a sentence and the exit code of a resource that failed, not with a signal. For the program
-/// alone: a library leaves such things to whoever uses it.
+/// alone: a library leaves such things to the program that uses it.
 pub struct Allocator;
 
 // SAFETY: every request goes to the system's allocator unchanged.
@@ -113,8 +113,8 @@ fn refused(bytes: usize) {
     let last_words: [&[u8]; 4] = [
         b"error: out of memory: ",
         abrupt::decimal(bytes, &mut digits),
-        b" bytes more were asked for and refused\n",
-        b"hint: give the program more memory, or it less to do: a smaller picture or volume\n",
+        b" bytes more were requested and refused\n",
+        b"hint: give the program more memory, or choose a smaller picture or volume\n",
     ];
     abrupt::end(&last_words, ErrorKind::Resource.exit_code())
 }
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn room_that_is_not_there_is_an_error_and_room_that_is_is_kept() {
+    fn memory_that_is_not_there_is_an_error_and_memory_that_is_there_is_held() {
         let refused = room::<u64>(usize::MAX / 16, "a test").unwrap_err();
         assert_eq!(refused.kind(), ErrorKind::Resource);
         assert!(refused.to_string().contains("a test"), "{refused}");

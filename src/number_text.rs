@@ -39,7 +39,7 @@ pub(crate) fn whole(text: &str, min: u64) -> Result<u64> {
         Ok(number) if number >= min => Ok(number),
         Err(error) if *error.kind() == PosOverflow => Err(too_large(text)),
         _ => Err(Error::usage(format!(
-            "'{text}' is not a whole number from {min} on"
+            "'{text}' is not a whole number of at least {min}"
         ))),
     }
 }

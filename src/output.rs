@@ -13,8 +13,8 @@ pub use unfinished::forget_unfinished;
 
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// That [`write_atomically`] can write `path`, as far as can be told without writing it: a
-/// temporary file is made in its folder and dropped. For knowing it before hours of work.
+/// Checks that [`write_atomically`] can write `path`, as far as that is possible without writing it: a
+/// temporary file is made in its folder and dropped. Useful before hours of work.
 ///
 /// # Errors
 /// In the words of [`write_atomically`].
@@ -25,13 +25,13 @@ pub fn check_writable(path: &Path) -> Result<()> {
     }
 }
 
-/// Whether [`write_atomically`] makes a file of `path`, and not a device or a pipe receives it.
+/// Whether [`write_atomically`] would create a file at `path`, rather than write to a device or a pipe.
 pub fn becomes_file(path: &Path) -> bool {
     std::fs::metadata(path).map_or(true, |there| there.is_file())
 }
 
-/// That files can be written into a folder, or that it can be made where it is not there yet, as far as
-/// can be told without making it.
+/// Checks that files can be written into a folder, or that the folder can be created if it does not
+/// exist, as far as that is possible without creating it.
 ///
 /// # Errors
 /// What is there is no folder, or takes no files.
@@ -51,7 +51,7 @@ pub fn check_folder(path: &Path) -> Result<()> {
 ///
 /// A new file gets the permissions that the umask gives, an old one keeps its own; a symbolic link
 /// stays and its target is replaced. What is no regular file (a device, a pipe) cannot be replaced:
-/// it receives the finished bytes, of which a reader that has gone away wants no more.
+/// it receives the finished bytes, of which a reader that has closed its end wants no more.
 ///
 /// What processes that were killed have left in the folder is removed.
 ///
@@ -195,7 +195,7 @@ fn refusal(folder: &Path, cause: &io::Error) -> String {
     let folder_name = folder.display();
     match cause.kind() {
         io::ErrorKind::NotFound if !folder.exists() => {
-            format!("there is no folder '{folder_name}'")
+            format!("the folder '{folder_name}' does not exist")
         }
         io::ErrorKind::NotFound => format!("the folder '{folder_name}' takes no files"),
         io::ErrorKind::NotADirectory => format!("'{folder_name}' is not a folder"),
@@ -263,7 +263,7 @@ mod tests {
         fs::write(root.join("file"), "x").unwrap();
         fs::create_dir(root.join("sub")).unwrap();
         let cases = [
-            (root.join("missing/a.txt"), "there is no folder"),
+            (root.join("missing/a.txt"), "does not exist"),
             (root.join("file/a.txt"), "is not a folder"),
             (root.join("sub"), "this is a folder"),
             (root.join(".."), "this is a folder"),
@@ -328,7 +328,7 @@ mod tests {
         assert_eq!(proc.hint_text(), None);
         // The control.
         let missing = said("/proc/none/a.png");
-        assert!(missing.to_string().contains("no folder"), "{missing}");
+        assert!(missing.to_string().contains("does not exist"), "{missing}");
         assert!(missing.hint_text().is_some());
     }
 

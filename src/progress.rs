@@ -15,7 +15,7 @@ pub trait Progress: Sync {
     fn end(&self);
 }
 
-/// Listens to nothing.
+/// A listener that ignores everything.
 pub struct Silent;
 
 impl Progress for Silent {
@@ -24,7 +24,7 @@ impl Progress for Silent {
     fn end(&self) {}
 }
 
-/// A stage that is over when this is dropped, also on the way out of a failure.
+/// A stage that ends when this is dropped, also when an error is returned.
 pub struct Stage<'a>(&'a dyn Progress);
 
 impl<'a> Stage<'a> {
@@ -34,7 +34,7 @@ impl<'a> Stage<'a> {
         Self(progress)
     }
 
-    /// `units` more are done.
+    /// Reports that `units` more are done.
     pub fn advance(&self, units: u64) {
         self.0.advance(units);
     }

@@ -1,6 +1,6 @@
-//! Being asked to stop: Ctrl-C, or a scheduler's SIGTERM.
+//! Requests to stop: Ctrl-C, or a scheduler's SIGTERM.
 //!
-//! Long work [`listen`]s once and looks at [`asked`] between its parts. What it has finished by then
+//! Long work calls [`listen`] once and checks [`requested`] between its parts. What it has finished by then
 //! is whole, and it ends with [`Error::stopped`](crate::error::Error::stopped). Other work
 //! [ends at once](end_at_once).
 
@@ -14,17 +14,17 @@ use signal_hook::low_level;
 use crate::error::{Error, ErrorKind, Result};
 use crate::output::forget_unfinished;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static REQUESTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on the first SIGINT or SIGTERM only sets what [`asked`] tells, and the second ends the
-/// process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so
-/// that `nohup` keeps its meaning.
+/// Listens for signals: the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second
+/// ends the process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as
+/// it is, so that `nohup` keeps its meaning.
 ///
 /// # Errors
 /// The system lets no signals be caught.
 pub fn listen(say: impl Fn(Signal) -> ErrorKind + Send + 'static) -> Result<()> {
     spawn(move || {
-        let signal = match ASKED.swap(true, Ordering::Relaxed) {
+        let signal = match REQUESTED.swap(true, Ordering::Relaxed) {
             false => Signal::First,
             true => Signal::Second,
         };
@@ -33,8 +33,8 @@ pub fn listen(say: impl Fn(Signal) -> ErrorKind + Send + 'static) -> Result<()> 
     })
 }
 
-/// From now on a SIGINT or SIGTERM ends the process, for work that has nothing to put in order: `say` is
-/// called, and gives the exit code. Files that are not finished are removed.
+/// Lets a SIGINT or SIGTERM end the process, for work that has nothing to put in order: `say` is called,
+/// and gives the exit code. Files that are not finished are removed.
 ///
 /// # Errors
 /// The system lets no signals be caught.
@@ -42,7 +42,7 @@ pub fn end_at_once(say: impl Fn() -> ErrorKind + Send + 'static) -> Result<()> {
     spawn(move || Some(say()))
 }
 
-/// Which of the signals that [`listen`] hears.
+/// One of the signals that [`listen`] hears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     First,
@@ -59,7 +59,7 @@ fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
         for _ in signals.forever() {
             if let Some(kind) = heard() {
                 forget_unfinished();
-                // Not by way of the drivers' own ends, which wait for their threads.
+                // Without the drivers' exit handlers, which wait for their threads.
                 low_level::exit(kind.exit_code().into());
             }
         }
@@ -68,13 +68,13 @@ fn spawn(heard: impl Fn() -> Option<ErrorKind> + Send + 'static) -> Result<()> {
 }
 
 /// Whether it is time to stop.
-pub fn asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+pub fn requested() -> bool {
+    REQUESTED.load(Ordering::Relaxed)
 }
 
-/// What work came to, where `check` fails when it is time to stop: a failure then is the stop, not a
-/// fault. For a signal while kernels are built makes LLVM remove the files that it is writing, so
-/// that the build fails.
+/// The outcome of work, or the stop if `check` fails because it is time to stop: a failure then is the
+/// stop, not a fault. A signal while kernels are built makes LLVM remove the files that it is writing,
+/// so that the build fails.
 ///
 /// # Errors
 /// Those of `check` where the work failed, else the work's own.
@@ -90,13 +90,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stop_is_told_in_place_of_a_failure_and_of_nothing_else() {
+    fn a_stop_is_reported_in_place_of_a_failure_and_of_nothing_else() {
         let stopped = || Err(Error::stopped("stopped"));
         let failed = || Err::<u8, _>(Error::failed("no kernel"));
         let told = over_failure(failed(), stopped).unwrap_err();
         assert_eq!(told.kind(), ErrorKind::Stopped);
         assert_eq!(over_failure(Ok(3), stopped), Ok(3));
-        // The control: nobody asked, so that the fault is told.
+        // The control: no stop was requested, so that the fault is reported.
         assert_eq!(over_failure(failed(), || Ok(())), failed());
     }
 }

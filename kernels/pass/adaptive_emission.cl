@@ -162,7 +162,7 @@ static inline void add_piece(VOXELS voxels, const Emitter *emitter, Accumulated 
     points[0] = point_at(voxels, emitter, piece, FLOATS(0.0f));
     *samples += which ? INTS(1) : INTS(0);
     for (uint tries = 0u; tries < MAX_TRIES && ANY(which); tries++) {
-        // Sums of powers of two, not below the least: exact.
+        // Sums of powers of two, not below the smallest: exact.
         width = min_of(width, 1.0f - u);
         for (uint n = 1u; n < 5u; n++)
             points[n] = point_at(voxels, emitter, piece, u + (0.25f * (float)n) * width);

@@ -67,7 +67,7 @@ class Talk:
         try:
             ((what, request),) = json.loads(line).items()
             return {"load": self.load, "scene": self.scene, "render": self.render, "forget": self.forget}[what](request)
-        except Exception as error:  # whatever it is, the other side is told and may go on
+        except Exception as error:  # whatever it is, the other side gets it and may continue
             return {"error": f"{type(error).__name__}: {error}"}
 
 

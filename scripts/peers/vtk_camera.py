@@ -2,32 +2,32 @@
 import numpy as np
 
 
-def set_camera(renderer, told, center_world):
+def set_camera(renderer, request, center_world):
     """Sets the camera and fits the clipping planes to what is shown."""
-    eye, forward = np.array(told["eye"]), np.array(told["forward"])
+    eye, forward = np.array(request["eye"]), np.array(request["forward"])
     # Only a direction matters; a point of the volume's own distance keeps digits.
     distance = max(abs(np.dot(center_world - eye, forward)), 1e-3)
     camera = renderer.GetActiveCamera()
     camera.SetPosition(*eye)
     camera.SetFocalPoint(*(eye + forward * distance))
-    camera.SetViewUp(*told["up"])
-    if "fov_deg" in told:
+    camera.SetViewUp(*request["up"])
+    if "fov_deg" in request:
         camera.ParallelProjectionOff()
-        camera.SetViewAngle(told["fov_deg"])
+        camera.SetViewAngle(request["fov_deg"])
     else:
         camera.ParallelProjectionOn()
-        camera.SetParallelScale(told["ortho_height_mm"] / 2)
+        camera.SetParallelScale(request["ortho_height_mm"] / 2)
     renderer.ResetCameraClippingRange()
 
 
-def depth_mm(renderer, told, size, z_buffer):
+def depth_mm(renderer, request, size, z_buffer):
     """Distances from the eye along the rays; +inf where nothing was drawn."""
     near, far = renderer.GetActiveCamera().GetClippingRange()
-    if "ortho_height_mm" in told:
+    if "ortho_height_mm" in request:
         depth = near + z_buffer * (far - near)
     else:
         ahead = near * far / (far - z_buffer * (far - near))
-        depth = ahead * along_ray(told["fov_deg"], size)
+        depth = ahead * along_ray(request["fov_deg"], size)
     return np.where(z_buffer < 1.0, depth, np.inf)
 
 

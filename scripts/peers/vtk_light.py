@@ -36,10 +36,10 @@ def set_phong(prop, phong, has):
     prop.SetDiffuse(phong["diffuse"])
     prop.SetSpecular(phong["specular"])
     exponent = phong["shininess"]
-    asked = phong["reflection"]
-    if asked != has:
+    wanted = phong["reflection"]
+    if wanted != has:
         exponent = exponent * BLINN_OVER_PHONG if has == "blinn-phong" else exponent / BLINN_OVER_PHONG
     prop.SetSpecularPower(exponent)
-    if asked != has and phong["specular"] > 0:
+    if wanted != has and phong["specular"] > 0:
         return f"its highlights are {has}, with an exponent of {exponent:g}"
     return None

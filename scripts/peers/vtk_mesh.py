@@ -7,11 +7,11 @@ from vtk_light import add_light, set_phong
 
 
 class Mesh:
-    def __init__(self, renderer, volume, told):
+    def __init__(self, renderer, volume, request):
         self.notes = []
         surface = vtkFlyingEdges3D()
         surface.SetInputData(volume.image)
-        surface.SetValue(0, told["iso"])
+        surface.SetValue(0, request["iso"])
         surface.ComputeNormalsOn()
         surface.ComputeScalarsOff()
         surface.Update()
@@ -23,21 +23,21 @@ class Mesh:
         actor.SetMapper(mapper)
         actor.SetUserMatrix(volume.matrix())
         prop = actor.GetProperty()
-        prop.SetColor(*told["color"])
-        if told["phong"]:
+        prop.SetColor(*request["color"])
+        if request["phong"]:
             prop.SetInterpolationToPhong()
             prop.SetSpecularColor(1, 1, 1)
-            note = set_phong(prop, told["phong"], has="phong")
+            note = set_phong(prop, request["phong"], has="phong")
             self.notes += [note] if note else []
         else:
             prop.LightingOff()
-        add_light(renderer, told["toward_light"], at_eye="fov_deg" in told["camera"])
-        if told["caps"] and volume.touches_faces(told["iso"]):
+        add_light(renderer, request["toward_light"], at_eye="fov_deg" in request["camera"])
+        if request["caps"] and volume.touches_faces(request["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         renderer.AddActor(actor)
 
     def rgba(self, window):
         return window.rgba()
 
-    def depth(self, renderer, window, told):
-        return depth_mm(renderer, told["camera"], told["size"], window.z_buffer())
+    def depth(self, renderer, window, request):
+        return depth_mm(renderer, request["camera"], request["size"], window.z_buffer())

@@ -1,4 +1,4 @@
-"""VTK's ways to draw a volume, by the names of the settings."""
+"""VTK's methods of drawing a volume, by the names of the settings."""
 from dataclasses import dataclass, field
 
 from vtk_mesh import Mesh

@@ -31,25 +31,25 @@ def set_steps(mapper, volume, step_voxels):
     mapper.SetImageSampleDistance(1.0)
 
 
-def set_look(mapper, prop, volume, told):
+def set_appearance(mapper, prop, volume, request):
     """Blend mode, colours and opacities of a scene."""
     color, opacity = vtkColorTransferFunction(), vtkPiecewiseFunction()
     low, high = volume.range
-    mode = told["mode"]
+    mode = request["mode"]
     if mode == "dvr":
         mapper.SetBlendModeToComposite()
         # Two points at one value are a jump.
         color.AllowDuplicateScalarsOn()
         opacity.AllowDuplicateScalarsOn()
-        for value, r, g, b, alpha in told["points"]:
+        for value, r, g, b, alpha in request["points"]:
             color.AddRGBPoint(value, r, g, b)
             opacity.AddPoint(value, alpha)
-        prop.SetScalarOpacityUnitDistance(told["unit_length_mm"])
+        prop.SetScalarOpacityUnitDistance(request["unit_length_mm"])
     elif mode == "iso":
         mapper.SetBlendModeToIsoSurface()
-        prop.GetIsoSurfaceValues().SetValue(0, told["iso"])
+        prop.GetIsoSurfaceValues().SetValue(0, request["iso"])
         for value in (low, high):
-            color.AddRGBPoint(value, *told["color"])
+            color.AddRGBPoint(value, *request["color"])
             opacity.AddPoint(value, 1)
     else:
         if mode == "mip":
@@ -57,7 +57,7 @@ def set_look(mapper, prop, volume, told):
         else:
             mapper.SetBlendModeToMinimumIntensity()
         # The grey that is shown, which is linear in the value; decoded when the picture is done.
-        black, white = told["window"]
+        black, white = request["window"]
         color.AddRGBPoint(black, 0, 0, 0)
         color.AddRGBPoint(white, 1, 1, 1)
         for value in (low, high):
@@ -71,7 +71,7 @@ class FixedPoint:
     #: What the mapper's integers call 1.
     ONE = 0x7FFF
 
-    def __init__(self, renderer, volume, told, step_voxels):
+    def __init__(self, renderer, volume, request, step_voxels):
         self.notes = []
         mapper = vtkFixedPointVolumeRayCastMapper()
         self.image = mapper.GetRayCastImage()
@@ -80,14 +80,14 @@ class FixedPoint:
         mapper.SetNumberOfThreads(os.cpu_count())
         mapper.IntermixIntersectingGeometryOff()
         prop = vtkVolumeProperty()
-        set_look(mapper, prop, volume, told)
-        if told["phong"]:
+        set_appearance(mapper, prop, volume, request)
+        if request["phong"]:
             prop.ShadeOn()
-            if told["toward_light"] is None and "fov_deg" in told["camera"]:
+            if request["toward_light"] is None and "fov_deg" in request["camera"]:
                 self.notes.append("its light falls along the view direction, not along each ray")
-            note = set_phong(prop, told["phong"], has="blinn-phong")
+            note = set_phong(prop, request["phong"], has="blinn-phong")
             self.notes += [note] if note else []
-        add_light(renderer, told["toward_light"], at_eye=False)
+        add_light(renderer, request["toward_light"], at_eye=False)
         show(renderer, volume, mapper, prop)
 
     def rgba(self, window):
@@ -111,7 +111,7 @@ class FixedPoint:
 
 
 class Gpu:
-    def __init__(self, renderer, volume, told, step_voxels):
+    def __init__(self, renderer, volume, request, step_voxels):
         self.notes = []
         self.mapper = vtkGPUVolumeRayCastMapper()
         set_steps(self.mapper, volume, step_voxels)
@@ -120,32 +120,32 @@ class Gpu:
         self.mapper.SetMaxMemoryFraction(1.0)
         self.mapper.SetDepthImageScalarTypeToFloat()
         prop = vtkVolumeProperty()
-        set_look(self.mapper, prop, volume, told)
+        set_appearance(self.mapper, prop, volume, request)
         add_light(renderer, None, at_eye=False)
-        if told["phong"]:
-            if told["toward_light"] is not None:
+        if request["phong"]:
+            if request["toward_light"] is not None:
                 raise Unsupported("the GPU mapper is given a headlight only: it adds others' ambient light without the colour")
-            if "ortho_height_mm" in told["camera"]:
+            if "ortho_height_mm" in request["camera"]:
                 self.notes.append("its light falls from one point, not along each ray")
             prop.ShadeOn()
-            note = set_phong(prop, told["phong"], has="phong")
+            note = set_phong(prop, request["phong"], has="phong")
             self.notes += [note] if note else []
-        if told["mode"] == "iso" and told["caps"] and volume.touches_faces(told["iso"]):
+        if request["mode"] == "iso" and request["caps"] and volume.touches_faces(request["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         show(renderer, volume, self.mapper, prop)
 
     def rgba(self, window):
         return window.rgba()
 
-    def depth(self, renderer, window, told):
+    def depth(self, renderer, window, request):
         """Of surfaces, from another rendering into an image with depths."""
-        if told["mode"] != "iso":
+        if request["mode"] != "iso":
             return None
         self.mapper.RenderToImageOn()
         window.render()
         image = vtkImageData()
         self.mapper.GetDepthImage(image)
         self.mapper.RenderToImageOff()
-        width, height = told["size"]
+        width, height = request["size"]
         z_buffer = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width)[::-1]
-        return depth_mm(renderer, told["camera"], told["size"], z_buffer.astype(np.float64))
+        return depth_mm(renderer, request["camera"], request["size"], z_buffer.astype(np.float64))

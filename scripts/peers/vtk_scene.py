@@ -1,4 +1,4 @@
-"""A scene in one of VTK's methods, drawn as often as it is asked."""
+"""A scene in one of VTK's methods, drawn as often as it is requested."""
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
@@ -8,36 +8,36 @@ from vtk_window import Window
 
 
 class Scene:
-    def __init__(self, method, volume, told):
-        self.told = told
+    def __init__(self, method, volume, request):
+        self.request = request
         self.center_world = volume.center_world()
-        refuse_what_vtk_lacks(volume, told)
+        refuse_what_vtk_lacks(volume, request)
         self.renderer = vtkRenderer()
         # The background comes after the picture, and not from here.
         self.renderer.SetBackground(0, 0, 0)
-        self.window = Window(self.renderer, told["size"])
-        self.drawn = method.make(self.renderer, volume, told, **method.arguments)
+        self.window = Window(self.renderer, request["size"])
+        self.drawn = method.make(self.renderer, volume, request, **method.arguments)
         self.note = "; ".join(self.drawn.notes) or None
 
     def render(self, camera):
-        set_camera(self.renderer, camera or self.told["camera"], self.center_world)
+        set_camera(self.renderer, camera or self.request["camera"], self.center_world)
         self.window.render()
 
     def color(self):
         """Linear light, premultiplied."""
         rgba = self.drawn.rgba(self.window)
-        if self.told["mode"] in ("mip", "minip"):
+        if self.request["mode"] in ("mip", "minip"):
             return np.concatenate([linear_from_srgb(rgba[..., :3]), rgba[..., 3:]], axis=2)
         return rgba
 
     def depth(self):
-        return self.drawn.depth(self.renderer, self.window, self.told)
+        return self.drawn.depth(self.renderer, self.window, self.request)
 
 
-def refuse_what_vtk_lacks(volume, told):
-    if told["clip_planes"]:
+def refuse_what_vtk_lacks(volume, request):
+    if request["clip_planes"]:
         raise Unsupported("clip planes are not handed to VTK")
-    if told["filter"] != "linear" or told["gradient"] != "central":
+    if request["filter"] != "linear" or request["gradient"] != "central":
         raise Unsupported("VTK interpolates linearly and takes central differences")
     if volume.is_sheared():
         raise Unsupported("the volume's axes are not at right angles")

@@ -12,20 +12,20 @@ TYPES = {"u8": np.uint8, "u16": np.uint16, "i16": np.int16, "f32": np.float32}
 
 
 class Volume:
-    def __init__(self, told):
+    def __init__(self, request):
         # VTK reads the array in place.
-        self.voxels = np.fromfile(told["file"], TYPES[told["type"]])
-        self.dims = told["dims"]
-        self.spacing = np.array(told["spacing"])
-        self.range = told["range"]
+        self.voxels = np.fromfile(request["file"], TYPES[request["type"]])
+        self.dims = request["dims"]
+        self.spacing = np.array(request["spacing"])
+        self.range = request["range"]
         self.image = vtkImageData()
         self.image.SetDimensions(*self.dims)
         self.image.SetSpacing(*self.spacing)
         self.image.GetPointData().SetScalars(numpy_to_vtk(self.voxels, deep=False))
         #: World from the image's own millimetres: rows of a 4 by 4 matrix.
         self.world_from_image = np.eye(4)
-        self.world_from_image[:3, :3] = np.array(told["direction"]).T
-        self.world_from_image[:3, 3] = told["origin"]
+        self.world_from_image[:3, :3] = np.array(request["direction"]).T
+        self.world_from_image[:3, 3] = request["origin"]
 
     def matrix(self):
         matrix = vtkMatrix4x4()

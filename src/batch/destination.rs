@@ -6,31 +6,31 @@ use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::{self, Animation, Encoding, Frame, Reel, is_whole};
+use crate::frame::{self, Animation, Encoding, Frame, Reel, is_complete};
 
 use super::{FinishedFrames, FrameNames};
 
-/// A frame on its way to its file.
+/// A frame that is to be written to its file.
 pub struct Shot<T> {
-    /// Which one of the path it is.
+    /// The frame's index along the path.
     pub index: u32,
     pub frame: Frame,
-    /// Its own, as the text that pictures carry.
+    /// The frame's scene, as the text that pictures carry.
     pub scene: String,
-    /// What is to be recorded of it.
+    /// The record of it that the caller wants back.
     pub about: T,
 }
 
 /// The record of a frame that has been written.
 pub struct Written<T> {
-    /// Which one of the path it is.
+    /// The frame's index along the path.
     pub index: u32,
     pub about: T,
     /// Encoding and writing it; in an animation the last one's takes in closing the file.
     pub encode_ms: f64,
 }
 
-/// What frames are written to.
+/// Where frames are written to.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Destination {
     /// Every frame to a file of its own.
@@ -47,11 +47,11 @@ pub enum Destination {
     },
 }
 
-/// What a picture depends on beside its scene. Pictures carry it, so that no frame of another volume,
-/// device or program is taken for a finished one.
+/// Everything but its scene that a picture depends on. Pictures carry it, so that no frame of another
+/// volume, device or program is taken for a finished one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// The program's.
+    /// The version of the program.
     pub version: &'static str,
     /// The volume's [content](crate::volume::Volume::content_hash), in hexadecimal: another one may
     /// come to lie under the same name.
@@ -92,7 +92,7 @@ impl Destination {
         }
     }
 
-    /// Makes the folder of a sequence, or of an animation's finished frames, where there is none.
+    /// Makes the folder of a sequence, or of an animation's finished frames, if it does not exist.
     ///
     /// # Errors
     /// It cannot be made.
@@ -110,11 +110,11 @@ impl Destination {
         }
     }
 
-    /// Whether a frame is finished already: whole, of this scene and this provenance.
+    /// Whether a frame is finished already: complete, of this scene and this provenance.
     pub fn holds(&self, index: u32, size: ImageSize, scene: &str, from: &Provenance) -> bool {
         match self {
             Self::Pictures { names, encoding } => {
-                is_whole(&names.path(index), size, encoding, &from.metadata(scene))
+                is_complete(&names.path(index), size, encoding, &from.metadata(scene))
             }
             Self::Animation { finished, .. } => (finished.as_ref())
                 .is_some_and(|finished| finished.holds(index, size, &from.metadata(scene))),
@@ -179,7 +179,7 @@ impl Destination {
     }
 }
 
-/// All frames of an animation in order: those that come, which are saved on their way, and between them
+/// All frames of an animation in order: those that are made, which are saved meanwhile, and between them
 /// those that were finished before.
 struct Joined<'a, T, I: Iterator<Item = Result<Shot<T>>>> {
     finished: Option<&'a FinishedFrames>,

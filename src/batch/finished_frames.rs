@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
-use crate::frame::{self, Encoding, Format, Frame, is_whole};
+use crate::frame::{self, Encoding, Format, Frame, is_complete};
 
 use super::FrameNames;
 
@@ -43,7 +43,7 @@ impl FinishedFrames {
     }
 
     pub(super) fn holds(&self, index: u32, size: ImageSize, metadata: &[(&str, &str)]) -> bool {
-        is_whole(&self.0.path(index), size, &Self::encoding(), metadata)
+        is_complete(&self.0.path(index), size, &Self::encoding(), metadata)
     }
 
     pub(super) fn save(&self, index: u32, frame: &Frame, metadata: &[(&str, &str)]) -> Result<()> {

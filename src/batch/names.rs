@@ -57,7 +57,7 @@ impl FrameNames {
             };
             match width.filter(|&width| width <= Self::MAX_DIGITS) {
                 Some(width) => places.push(width),
-                None => return Err(wrong("no frame's number has so many digits")),
+                None => return Err(wrong("no frame number has so many digits")),
             }
             texts.push(String::new());
             rest = after;

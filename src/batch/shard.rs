@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// Of `count` processes the one of this index: frames k with k ≡ index (mod count). Frames side by
-/// side cost alike, so that all shares do.
+/// One process's share of `count`: the frames k with k ≡ index (mod count). Neighbouring frames cost
+/// about the same, so the shares do too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: u32,
@@ -35,7 +35,8 @@ impl Shard {
         self.index
     }
 
-    /// Its share where every process of `outer` is as many processes as this one is of.
+    /// The share of `self` within a share `outer`, each of whose processes runs as many processes as
+    /// `self` counts.
     fn within(self, outer: Self) -> Result<Self> {
         let count = outer.count.checked_mul(self.count).ok_or_else(|| {
             Error::usage(format!(
@@ -46,7 +47,7 @@ impl Shard {
         Self::new(outer.index * self.count + self.index, count)
     }
 
-    /// Its frames among the first `frames`.
+    /// The frames of this share among the first `frames`.
     pub fn frames(self, frames: u32) -> impl Iterator<Item = u32> {
         (self.index..frames).step_by(self.count as usize)
     }
@@ -58,11 +59,11 @@ impl fmt::Display for Shard {
     }
 }
 
-/// `--shard`.
+/// The choice by `--shard`: a given share, or that of the environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
     Given(Shard),
-    /// As the environment says, which the program that started this one set.
+    /// Taken from the environment, as set by the launcher that started this program.
     Auto,
 }
 
@@ -126,10 +127,10 @@ impl ShardChoice {
         }
         let ranks = RANKS.map(|(index, count)| format!("{index} and {count}"));
         Err(Error::usage(
-            "shard auto: nothing in the environment says which of how many processes this is",
+            "shard auto: the environment does not say which process this is, and of how many",
         )
         .hint(format!(
-            "start it by sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",
+            "start it with sbatch --array, srun or mpirun (which set {ARRAY_TASK}, {}), or write --shard I/N",
             ranks.join(", or ")
         )))
     }

@@ -17,12 +17,12 @@ use crate::options::{Count, FilePath, SceneFile, Switch, Threshold, VolumeOption
 use crate::progress::Progress;
 use crate::volume::percentiles;
 
-use super::engine::{DeviceOptions, Engine};
-use super::load::Source;
+use super::backend::{Backend, DeviceOptions};
 use super::phantom::Seed;
 use super::progress::Bars;
 use super::repeat::command_line;
 use super::scene::SceneArgument;
+use super::source::Source;
 use super::stopping;
 use super::terminal::{lines_to_stdout, message, note};
 
@@ -42,7 +42,7 @@ pub struct BenchArguments {
 }
 
 group! {
-    /// What is measured, and how thoroughly.
+    /// The options of a measurement: what is measured, and how thoroughly.
     pub struct BenchOptions {
         /// The experiment's name
         #[arg(value_name = "EXPERIMENT")]
@@ -85,12 +85,12 @@ group! {
         peer: String,
 
         /// A folder for the table as results.csv and results.json, unrounded, and as report.html, with
-        /// pictures; made where there is none. It fills during the work: the same command resumes
+        /// pictures; created if it does not exist. It fills during the work: the same command resumes
         /// a run that was stopped
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
-        /// Forget what a run that was stopped has left in the folder
+        /// Discard what a stopped run has left in the folder
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on")]
         restart: Switch,
@@ -142,10 +142,10 @@ impl BenchArguments {
         } else {
             stopping::at_once("without --output nothing is saved")?;
         }
-        let Engine::Device {
+        let Backend::Device {
             device,
             options: use_of_device,
-        } = Engine::open(&device)?
+        } = Backend::open(&device)?
         else {
             return Err(Error::usage(
                 "the reference cannot be measured: it is what others are compared with",
@@ -261,7 +261,7 @@ impl BenchOptions {
         };
         Err(match need {
             Need::TimedFrames => Error::usage(format!(
-                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera in its own way"
+                "'--{option}' has no effect in the experiment '{name}', which times no frames, or moves the camera by itself"
             )),
             Need::Volumes => Error::usage(format!("'--{option}' has no effect without a volume"))
                 .hint("name the volumes that it is meant for"),
@@ -281,7 +281,7 @@ impl BenchOptions {
     fn preset(&self) -> Result<Preset> {
         match (is_on(self.quick), is_on(self.full)) {
             (true, true) => {
-                Err(Error::usage("'quick' and 'full' do not go together")
+                Err(Error::usage("'quick' and 'full' cannot be combined")
                     .hint("choose one of them"))
             }
             (true, false) => Ok(Preset::Quick),

@@ -6,13 +6,13 @@ use crate::error::{Error, Result};
 use crate::frame::{Format, carrier, read_metadata};
 use crate::options::SceneFile;
 
-/// What a picture says of itself.
+/// The metadata of a picture: its scene and its provenance.
 pub struct Carried {
     pub picture: PathBuf,
     pub format: Format,
-    /// As a scene file.
+    /// The scene, as the text of a scene file.
     pub scene: String,
-    /// The program's.
+    /// The version of the program that made the picture.
     pub version: Option<String>,
     /// The hash of the volume's content, in hexadecimal.
     pub content: Option<String>,
@@ -21,9 +21,9 @@ pub struct Carried {
 }
 
 impl Carried {
-    /// What a file carries; nothing where it is no picture of the formats that carry scenes, which are
-    /// recognised by content. What is no regular file, such as a pipe, can be read only once, and is
-    /// none.
+    /// Reads what a file carries; `None` if it is no picture of the formats that carry scenes, which are
+    /// recognised by content. A file that is not regular, such as a pipe, can be read only once, and
+    /// carries nothing.
     ///
     /// # Errors
     /// A picture that is damaged, or carries no scene.

@@ -9,7 +9,7 @@ use crate::output::write_atomically;
 use super::outputs;
 use super::terminal::{message, note};
 
-/// What stands before a hard case's name.
+/// The prefix of a hard case's name.
 const PREFIX: &str = "hardcase:";
 
 /// The name behind it, where the text names a hard case.

@@ -7,7 +7,7 @@ use super::Arguments;
 /// Columns of the help where the output is no terminal, and at most.
 pub const WIDTH: usize = 100;
 
-/// What the parser puts before and between the columns of the short help.
+/// The width that the parser puts before and between the columns of the short help.
 const MARGINS: usize = 12;
 
 /// Modes and the like, which an option's text begins with.
@@ -37,7 +37,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "gradient-smooth", "Sigma of smoothing before precomputed gradients"),
     ("", "clip-plane", "Keep what lies on this side of a plane; up to 64 times"),
     ("", "sampling", "exact, solving every cell, or at fixed steps"),
-    ("", "probe", "Fixed steps: look for peaks between samples [default: on]"),
+    ("", "probe", "Fixed steps: search for peaks between samples [default: on]"),
     ("", "max-error", "Choose the cheapest sampling within this error"),
     ("", "azimuth", "Turn the eye to the picture's right [default: 0]"),
     ("", "ortho", "Orthographic, the picture being this high"),
@@ -46,16 +46,16 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "aov", "Layers beside the colour in .exr and .npy, or all"),
     ("render", "output", "The picture: .png .jpg .webp .exr .npy"),
     ("replay", "output", "The picture: .png .jpg .webp .exr .npy"),
-    ("replay", "volume", "The volume, where it lies elsewhere than the picture says"),
+    ("replay", "volume", "The volume, if it is not where the picture says"),
     ("orbit", "output", "Pictures such as frames/%04d.png, or .gif .apng .mp4 .webm"),
-    ("orbit", "resume", "Keep the frames that are there, make the others"),
-    ("orbit", "axis", "What it turns about, through the target [default: up]"),
+    ("orbit", "resume", "Keep existing frames, make the missing ones"),
+    ("orbit", "axis", "The axis of rotation, through the target [default: up]"),
     ("compare", "output", "A folder for the report, the tables and the pictures"),
     ("compare", "configs", "Settings to compare in place of the built-in ones"),
     ("bench", "output", "A folder for the table and the report"),
     ("bench", "frames", "How often each mode is timed in the experiment speed"),
     ("bench", "peer", "Another renderer to time in the experiment speed"),
-    ("bench", "restart", "Forget what a stopped run left in the folder"),
+    ("bench", "restart", "Discard what a stopped run left in the folder"),
 ];
 
 /// The program as it reads its arguments and explains itself.
@@ -93,7 +93,7 @@ fn shortened(command: Command, name: &str) -> Command {
     if let Some(example) = first_example(&whole) {
         short.push_str(&format!("Example:\n  {example}\n\n"));
     }
-    short.push_str(&format!("All of it: {name} --help"));
+    short.push_str(&format!("Full help: {name} --help"));
     command.after_help(short).after_long_help(whole)
 }
 
@@ -114,7 +114,7 @@ fn shortened_option(argument: Arg, command: &str, room: usize) -> Arg {
     argument.long_help(long.unwrap_or(help)).help(short)
 }
 
-/// Those that share a first column: the options under one heading, or the arguments.
+/// The arguments that share a first column: the options under one heading, or the positional arguments.
 fn group_of(argument: &Arg) -> (bool, Option<String>) {
     let heading = argument.get_help_heading().map(str::to_owned);
     (argument.is_positional(), heading)
@@ -128,14 +128,14 @@ fn widths(command: &Command) -> Vec<((bool, Option<String>), usize)> {
         let values: usize = values.map(|value| value.len() + " <>".len()).sum();
         let may_lack = argument.get_num_args().is_some_and(|n| n.min_values() == 0);
         let width = match argument.get_long() {
-            // A place for a short name is always kept.
+            // Room for a short name is always left.
             Some(long) if may_lack => "-o, --[=".len() + long.len() + values,
             Some(long) => "-o, --".len() + long.len() + values,
             None => values,
         };
         let group = group_of(argument);
         match widths.iter_mut().find(|(other, _)| *other == group) {
-            Some((_, most)) => *most = width.max(*most),
+            Some((_, max_width)) => *max_width = width.max(*max_width),
             None => widths.push((group, width)),
         }
     }
@@ -231,7 +231,7 @@ mod tests {
             let name = command.get_name().to_owned();
             let short = command.render_help().to_string();
             let whole = command.render_long_help().to_string();
-            let end = format!("All of it: angioray {name} --help");
+            let end = format!("Full help: angioray {name} --help");
             assert!(short.trim_end().ends_with(&end), "{short}");
             for option in command.get_arguments() {
                 let Some(long) = option.get_long() else {
@@ -271,7 +271,7 @@ mod tests {
         let text = |text: Option<&clap::builder::StyledStr>| {
             text.map(ToString::to_string).unwrap_or_default()
         };
-        let is_whole = |option: &Arg| {
+        let is_complete = |option: &Arg| {
             let (short, long) = (text(option.get_help()), text(option.get_long_help()));
             let (before, _) = long.rsplit_once(" [default: ").unwrap_or((&long, ""));
             let (short, _) = short.rsplit_once(" [default: ").unwrap_or((&short, ""));
@@ -284,7 +284,7 @@ mod tests {
         let cut_off: Vec<String> = program
             .get_subcommands()
             .flat_map(Command::get_arguments)
-            .filter(|option| !is_whole(option))
+            .filter(|option| !is_complete(option))
             .map(|option| option.get_id().to_string())
             .collect();
         assert!(
@@ -293,7 +293,7 @@ mod tests {
         );
         // The control: what does not fit is cut off.
         let cut = shortened_option(Arg::new("x").help("One two three four"), "", 8);
-        assert!(!is_whole(&cut));
+        assert!(!is_complete(&cut));
     }
 
     #[test]

@@ -13,9 +13,9 @@ use crate::options::{SceneOptions, Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
 use super::carried::Carried;
-use super::load::{Loaded, Source};
 use super::progress::Bars;
 use super::scene::SceneArgument;
+use super::source::{Loaded, Source};
 use super::stats::VolumeStats;
 use super::terminal::{Lines, json_to_stdout, lines_to_stdout};
 
@@ -76,7 +76,7 @@ impl InfoArguments {
     }
 }
 
-/// What a picture carries: what it was made by, then the scene as a scene file.
+/// Prints what a picture carries: the program and volume that made it, then the scene as a scene file.
 fn print_carried(carried: &Carried, json: bool) -> Result<()> {
     let picture = carried.picture.display();
     if json {

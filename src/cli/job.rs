@@ -6,10 +6,10 @@ use crate::error::Result;
 use crate::options::{ErrorBound, SceneFile, SceneOptions, ToleranceOptions, TransferChoice};
 use crate::volume::files_of;
 
-use super::engine::DeviceOptions;
-use super::load::Source;
+use super::backend::DeviceOptions;
 use super::outputs::OutputOptions;
 use super::scene::SceneArgument;
+use super::source::Source;
 
 #[derive(clap::Args)]
 pub struct JobArguments {
@@ -31,7 +31,7 @@ pub struct JobArguments {
 
 /// Flags over the scene file, checked as far as can be without reading the volume.
 pub struct Job {
-    /// As [`Source::stored`].
+    /// The options of the scene as pictures store them ([`Source::stored`]).
     pub options: SceneOptions,
     /// Decides how rays are followed, where there is one.
     pub bound: Option<ErrorBound>,
@@ -48,6 +48,8 @@ impl JobArguments {
         self.scene.open()
     }
 
+    /// Lays these flags over a scene file's options.
+    ///
     /// # Errors
     /// Options that contradict each other or an error bound, a transfer function that cannot be read, no volume.
     pub fn over(self, file: &SceneFile) -> Result<Job> {

@@ -1,16 +1,15 @@
 //! The command line: arguments to a job, the job run, its outcome as an exit code.
 
+mod backend;
 mod bench;
 mod carried;
 mod compare;
 mod completion;
 mod devices;
-mod engine;
 mod hardcase;
 mod help;
 mod info;
 mod job;
-mod load;
 mod man;
 mod orbit;
 mod outputs;
@@ -20,6 +19,7 @@ mod render;
 mod repeat;
 mod replay;
 mod scene;
+mod source;
 mod stats;
 mod stopping;
 mod terminal;
@@ -58,7 +58,7 @@ struct Arguments {
 group! {
     /// How much the program says.
     pub struct Voice {
-        /// Say nothing but errors: no notes, no progress, no names of written files
+        /// Print only errors: no notes, no progress, no names of written files
         #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true,
             default_missing_value = "on", global = true, help_heading = None::<&str>)]
         quiet: Switch,
@@ -141,8 +141,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// What the program needs of the system before it works: threads, and an end in words where a file that
-/// it reads is shortened.
+/// Prepares the process: the thread pool, and a readable error in case a file is shortened while it is
+/// read.
 fn ready() -> Result<()> {
     rayon::ThreadPoolBuilder::new()
         .build_global()
@@ -180,7 +180,7 @@ fn misused(stop: &clap::Error) -> Error {
     let message = message.join(" ");
     let error = Error::usage(message.strip_prefix("error: ").unwrap_or(&message));
     if hints.is_empty() {
-        error.hint("--help lists what there is")
+        error.hint("--help lists them")
     } else {
         error.hint(hints.join("; "))
     }

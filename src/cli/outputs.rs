@@ -23,9 +23,9 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, with commas between, or all that the mode has. In dvr depth, normal and value are
-        /// means along the ray, weighted as its light is, where the opacity is 0.01 at least. certificate
-        /// goes with iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device
+        /// certificate, separated by commas, or all that the mode has. In dvr depth, normal and value are
+        /// means along the ray, weighted as its light is, where the opacity is at least 0.01. certificate
+        /// is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device
         /// prove nothing: 2 everywhere
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
@@ -59,11 +59,11 @@ impl OutputOptions {
     /// drops what its format cannot hold, another mode the layers that it does not have.
     pub fn over_file(self, mut file: Self, mode: Option<Mode>) -> Self {
         if let Some(mode) = mode {
-            file.aov = file.aov.and_then(|layers| layers.kept_in(mode));
+            file.aov = file.aov.and_then(|layers| layers.limited_to(mode));
         }
         if let Some(FilePath(path)) = &self.output {
             file =
-                file.keeping(|option| has_needs(Group::Output, option, |need| holds(path, need)));
+                file.retaining(|option| has_needs(Group::Output, option, |need| holds(path, need)));
         }
         self.over(file)
     }
@@ -117,6 +117,8 @@ impl OutputOptions {
         self.encoding(Path::new("frame.png"), mode)
     }
 
+    /// Resolves the options to the files that a picture of this mode is written to.
+    ///
     /// # Errors
     /// As [`OutputOptions::path`] and [`OutputOptions::encoding`].
     pub fn files(self, mode: Mode) -> Result<Files> {
@@ -129,7 +131,8 @@ impl OutputOptions {
     }
 }
 
-/// Whether a file of this name holds what an option needs; one of no known format is refused elsewhere.
+/// Whether a file of this name can hold what an option needs; a name of no known format is refused
+/// elsewhere.
 fn holds(path: &Path, need: Need) -> bool {
     if AnimationFormat::from_path(path).is_some() {
         return !matches!(need, Need::Layered | Need::Png | Need::Jpeg);
@@ -145,7 +148,7 @@ fn holds(path: &Path, need: Need) -> bool {
     }
 }
 
-/// What a rendering writes.
+/// The files that a rendering writes.
 pub struct Files {
     pub picture: PathBuf,
     pub encoding: Encoding,
@@ -170,13 +173,13 @@ impl Files {
     }
 }
 
-/// That `path` can be written, and is none of the files that the job reads.
+/// Checks that `path` can be written, and is none of the files that the job reads.
 pub fn check(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     check_spared(path, inputs)?;
     check_writable(path)
 }
 
-/// That `path` is none of the files that the job reads.
+/// Checks that `path` is none of the files that the job reads.
 pub fn check_spared(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     if inputs
         .iter()
@@ -190,8 +193,8 @@ pub fn check_spared(path: &Path, inputs: &[impl AsRef<Path>]) -> Result<()> {
     Ok(())
 }
 
-/// The same file, named so that the working folder does not matter. A symbolic link keeps its own
-/// name: a raw file's layout, and which files belong to a header, may lie in it.
+/// The absolute path of a file, independent of the working folder. A symbolic link keeps its own name: a
+/// raw file's layout, and which files belong to a header, may lie in it.
 fn absolute(path: &Path) -> PathBuf {
     let name = path.file_name().unwrap_or_default();
     match fs::canonicalize(folder(path)) {
@@ -207,8 +210,8 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// That no file of a sequence of so many frames replaces one that the job reads or, in `stats`,
-/// writes besides; and that they can be written, their folder being made where there is none.
+/// Checks that no file of a sequence of so many frames replaces one that the job reads or that `stats`
+/// writes, and that the files can be written, their folder being created if it does not exist.
 pub fn check_sequence(
     names: &FrameNames,
     frames: FrameCount,
@@ -248,7 +251,7 @@ fn links_in(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Where a file lies, whatever the way to it; of a file that is not there yet, where it will.
+/// The canonical path of a file, or its absolute path if it does not exist yet.
 fn place(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| absolute(path))
 }
@@ -261,7 +264,7 @@ pub enum Layers {
 }
 
 impl Layers {
-    /// Whether pictures of a mode have the layer: what is proven of a hit or a miss is of surfaces.
+    /// Whether pictures of a mode have the layer: certificates exist for surfaces alone.
     fn is_of(layer: Layer, mode: Mode) -> bool {
         layer != Layer::Certificate || mode == Mode::Iso
     }
@@ -279,7 +282,7 @@ impl Layers {
             Self::Named(layers) => match layers.iter().find(|layer| !Self::is_of(**layer, mode)) {
                 None => Ok(layers.clone()),
                 Some(stray) => Err(Error::usage(format!(
-                    "the layer '{}' does not go with mode '{mode}': only a surface is proven to be hit or missed",
+                    "the layer '{}' cannot be combined with mode '{mode}': only a surface is proven to be hit or missed",
                     stray.name()
                 ))
                 .hint("leave it out, or write all for every layer that the mode has")),
@@ -287,8 +290,8 @@ impl Layers {
         }
     }
 
-    /// Without those that the mode does not have; nothing where none is left.
-    fn kept_in(self, mode: Mode) -> Option<Self> {
+    /// Removes the layers that the mode does not have; `None` if none is left.
+    fn limited_to(self, mode: Mode) -> Option<Self> {
         match self {
             Self::All => Some(Self::All),
             Self::Named(mut layers) => {
@@ -311,7 +314,7 @@ impl FromStr for Layers {
             Layer::ALL.into_iter().find(is_it).ok_or_else(|| {
                 let names = Layer::ALL.map(Layer::name).join(", ");
                 Error::usage(format!(
-                    "'{name}' is no layer: write all, or some of {names} with commas between"
+                    "'{name}' is not a layer: write all, or some of {names} separated by commas"
                 ))
             })
         });
@@ -319,7 +322,7 @@ impl FromStr for Layers {
     }
 }
 
-/// `--bit-depth`.
+/// The bits per channel, as given by `--bit-depth`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits(BitDepth);
 

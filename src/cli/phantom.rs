@@ -49,7 +49,7 @@ pub struct PhantomArguments {
 }
 
 group! {
-    /// What is made, of which voxels.
+    /// The options of a phantom: what it contains, and its voxels.
     pub struct PhantomOptions {
         /// What it contains: a kind, or hardcase:NAME
         #[arg(value_name = "KIND", value_parser = Kinds)]
@@ -151,7 +151,7 @@ impl PhantomOptions {
     fn output_file(&self) -> Result<PathBuf> {
         let Some(FilePath(output)) = self.output.clone() else {
             return Err(Error::usage("no file to write was named")
-                .hint("give it by '--output', or as 'output' in the scene file"));
+                .hint("give it with '--output', or as 'output' in the scene file"));
         };
         let extension = output.extension();
         if extension.is_some_and(|e| e.eq_ignore_ascii_case("nrrd")) {
@@ -200,7 +200,7 @@ fn check_strays(options: &PhantomOptions, shape: &ShapeOptions) -> Result<()> {
     let mut strays = given.filter(|key| !["kind", "output", "gzip"].contains(&&**key));
     match strays.next() {
         Some(key) => Err(Error::usage(format!(
-            "'{}' does not go with a hard case: its voxels are what makes it hard",
+            "'{}' cannot be combined with a hard case: its voxels are what makes it hard",
             key.replace("voxel-type", "type")
         ))),
         None => Ok(()),
@@ -227,7 +227,7 @@ fn write_phantom(
         output.display(),
         spec.dims,
         spec.voxel_type,
-        made.truth
+        made.definition
     ));
     if let Some(tree) = &made.tree {
         write_tree(&tree_file, tree)?;
@@ -249,7 +249,7 @@ fn write_tree(path: &Path, tree: &VesselTree) -> Result<()> {
     })
 }
 
-/// What is made.
+/// The kind of volume that is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     Phantom(PhantomKind),
@@ -328,7 +328,7 @@ impl FromStr for GridSize {
     }
 }
 
-/// `--type`.
+/// The voxel type, as given by `--type`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelName(VoxelType);
 
@@ -346,7 +346,7 @@ impl FromStr for VoxelName {
     }
 }
 
-/// `--seed`.
+/// The seed, as given by `--seed`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seed(pub u64);
 

@@ -12,11 +12,11 @@ use crate::options::Resolved;
 use crate::render::GradientFigures;
 use crate::scene::SamplingMethod;
 
-use super::engine::{Engine, Rendered};
+use super::backend::{Backend, Rendered};
 use super::job::{Job, JobArguments};
-use super::load::{Loaded, ms_since};
 use super::outputs::Files;
 use super::progress::Bars;
+use super::source::{Loaded, ms_since};
 use super::stats::{self, Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
 use super::tolerance::choose;
@@ -43,15 +43,15 @@ impl RenderArguments {
         let mut job = self.job.over(&file)?;
         let files = job.output.clone().files(job.options.mode())?;
         files.check(&job.inputs)?;
-        let engine = Engine::open(&job.device)?;
+        let backend = Backend::open(&job.device)?;
         let bars = Bars::new();
-        let loaded = job.source.load(engine.device_info(), &bars)?;
+        let loaded = job.source.load(backend.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
         draw(Drawing {
             command: "render",
             job: &job,
             files: &files,
-            engine: &engine,
+            backend: &backend,
             loaded: &loaded,
             bars: &bars,
         })
@@ -64,7 +64,7 @@ pub struct Drawing<'a> {
     pub command: &'static str,
     pub job: &'a Job,
     pub files: &'a Files,
-    pub engine: &'a Engine,
+    pub backend: &'a Backend,
     pub loaded: &'a Loaded,
     pub bars: &'a Bars,
 }
@@ -74,7 +74,7 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
     let Drawing {
         job,
         files,
-        engine,
+        backend,
         loaded,
         bars,
         ..
@@ -84,8 +84,8 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
     files.encoding.check_size(resolved.scene.size)?;
 
     let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
-    let prepared = engine.prepare(&loaded.volume, &job.source, bars)?;
-    let mut caster = engine.caster(&loaded.volume, &prepared)?;
+    let prepared = backend.prepare(&loaded.volume, &job.source, bars)?;
+    let mut caster = backend.caster(&loaded.volume, &prepared)?;
     let choice = match job.bound {
         Some(bound) => choose(bound, &job.options, loaded, wanted, &[], &mut caster, bars)?,
         None => None,
@@ -120,7 +120,7 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
         times_ms.render,
         rendered.device.name
     ));
-    tell_certificate(&rendered.frame, &resolved);
+    print_certificate(&rendered.frame, &resolved);
     write_stats(&drawing, rendered, times_ms, &resolved, choice.as_ref())
 }
 
@@ -131,7 +131,7 @@ fn write_picture(drawing: &Drawing<'_>, frame: &Frame, resolved: &Resolved) -> R
         return frame::write(&files.picture, frame, &files.encoding, &[]);
     }
     let scene = resolved.options.to_toml()?;
-    let from = provenance(drawing.loaded, drawing.engine);
+    let from = provenance(drawing.loaded, drawing.backend);
     frame::write(
         &files.picture,
         frame,
@@ -140,17 +140,17 @@ fn write_picture(drawing: &Drawing<'_>, frame: &Frame, resolved: &Resolved) -> R
     )
 }
 
-/// What pictures of this volume by this engine depend on beside their scene.
-pub fn provenance(loaded: &Loaded, engine: &Engine) -> Provenance {
+/// Everything but their scene that pictures of this volume by this backend depend on.
+pub fn provenance(loaded: &Loaded, backend: &Backend) -> Provenance {
     Provenance {
         version: VERSION,
         content: loaded.content(),
-        device: engine.device().name,
+        device: backend.device().name,
     }
 }
 
 /// Says how much is proven of a picture of which something can be: a surface that is solved.
-fn tell_certificate(frame: &Frame, resolved: &Resolved) {
+fn print_certificate(frame: &Frame, resolved: &Resolved) {
     if let Some(undecided) = frame.undecided()
         && resolved.scene.sampling_method() == SamplingMethod::Exact
     {
@@ -195,7 +195,7 @@ fn write_stats(
     stats::write(&stats, path)
 }
 
-/// What precomputed gradients cost and are worth.
+/// The note on the cost and the use of precomputed gradients.
 pub fn gradient_note(figures: &GradientFigures) -> String {
     let megabytes = figures.bytes as f64 / 1e6;
     let angle = match figures.angle {

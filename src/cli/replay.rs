@@ -9,14 +9,14 @@ use crate::options::group::group;
 use crate::options::{FilePath, SceneOptions};
 use crate::volume::files_of;
 
+use super::backend::{Backend, DeviceName, DeviceOptions};
 use super::carried::Carried;
-use super::engine::{DeviceName, DeviceOptions, Engine};
 use super::job::Job;
-use super::load::{Loaded, Source};
 use super::outputs::{Files, OutputOptions};
 use super::progress::Bars;
 use super::render::{Drawing, draw};
 use super::scene::SceneArgument;
+use super::source::{Loaded, Source};
 use super::terminal::note;
 
 /// Render a picture again, from the scene that it carries
@@ -47,13 +47,13 @@ pub struct ReplayArguments {
 }
 
 group! {
-    /// Which picture, and of what.
+    /// The options that name the picture and its volume.
     pub struct ReplayOptions {
         /// The picture: a .png or .exr that render or orbit wrote
         #[arg(value_name = "IMAGE")]
         image: FilePath,
 
-        /// The volume, where it lies elsewhere than the picture says; its content must be the same
+        /// The volume, if it is not where the picture says; its content must be the same
         #[arg(long, value_name = "FILE")]
         volume: FilePath,
     }
@@ -73,7 +73,7 @@ impl ReplayArguments {
         };
         let Some(carried) = Carried::of(&image)? else {
             return Err(Error::input(format!(
-                "{}: no picture that carries a scene: neither a .png nor an .exr",
+                "{}: not a picture that carries a scene: neither a .png nor an .exr",
                 image.display()
             )));
         };
@@ -93,14 +93,14 @@ impl ReplayArguments {
         let output = self.output.over_file(of_file, Some(options.mode()));
         let files = as_it_was(output.clone().files(options.mode())?, &output, &carried)?;
         let device = self.device.over_file(file.group()?);
-        let engine = open(device.clone(), &carried)?;
+        let backend = open(device.clone(), &carried)?;
 
         let mut inputs = vec![image];
         inputs.extend(self.scene.path().map(Path::to_owned));
         places.iter().for_each(|path| inputs.extend(files_of(path)));
         files.check(&inputs)?;
         let bars = Bars::new();
-        let (source, loaded) = found(&places, &options, &carried, &engine, &bars)?;
+        let (source, loaded) = found(&places, &options, &carried, &backend, &bars)?;
         let mut options = source.stored(options);
         options.volume.volume = Some(replay.volume.unwrap_or(stored));
         let job = Job {
@@ -111,12 +111,12 @@ impl ReplayArguments {
             source,
             inputs,
         };
-        tell_version(&carried);
+        print_version(&carried);
         draw(Drawing {
             command: "replay",
             job: &job,
             files: &files,
-            engine: &engine,
+            backend: &backend,
             loaded: &loaded,
             bars: &bars,
         })
@@ -138,26 +138,26 @@ fn as_it_was(mut files: Files, output: &OutputOptions, carried: &Carried) -> Res
     Ok(files)
 }
 
-/// What renders: what is requested, else what rendered the picture, where it is here.
-fn open(mut device: DeviceOptions, carried: &Carried) -> Result<Engine> {
+/// Opens the requested device, else the one that rendered the picture, if it is here.
+fn open(mut device: DeviceOptions, carried: &Carried) -> Result<Backend> {
     if device.device.is_some() {
-        return Engine::open(&device);
+        return Backend::open(&device);
     }
     let Some(name) = &carried.device else {
-        return Engine::open(&device);
+        return Backend::open(&device);
     };
     device.device = Some(DeviceName::of(name));
-    match Engine::open(&device) {
+    match Backend::open(&device) {
         Err(error) if error.kind() == ErrorKind::NoDevice => {}
         opened => return opened,
     }
     device.device = None;
-    let engine = Engine::open(&device)?;
+    let backend = Backend::open(&device)?;
     note(format_args!(
         "the picture was rendered on {name}, which is not here: on {} it may differ in its last bits",
-        engine.device().name
+        backend.device().name
     ));
-    Ok(engine)
+    Ok(backend)
 }
 
 /// The volume that the picture was rendered of: the first of `places` where a volume of the same content
@@ -169,7 +169,7 @@ fn found(
     places: &[PathBuf],
     options: &SceneOptions,
     carried: &Carried,
-    engine: &Engine,
+    backend: &Backend,
     bars: &Bars,
 ) -> Result<(Source, Loaded)> {
     let there: Vec<&PathBuf> = places.iter().filter(|place| place.exists()).collect();
@@ -180,23 +180,25 @@ fn found(
     if there.is_empty() {
         let places: Vec<&PathBuf> = places.iter().collect();
         return Err(Error::input(format!(
-            "{}: its volume is not there; looked for {}",
+            "{}: its volume was not found; looked for {}",
             carried.picture.display(),
             shown(&places)
         ))
-        .hint("say where it is by --volume FILE"));
+        .hint("give its place with --volume FILE"));
     }
     for (at, place) in there.iter().enumerate() {
         let mut volume = options.volume.clone();
         volume.volume = Some(FilePath(place.to_path_buf()));
         let source = Source::of(&volume)?;
-        let loaded = match source.load(engine.device_info(), bars) {
+        let loaded = match source.load(backend.device_info(), bars) {
             Err(error) if at + 1 == there.len() => return Err(error),
             Err(_) => continue,
             Ok(loaded) => loaded,
         };
         let Some(content) = &carried.content else {
-            note("the picture does not say what its volume's content was: it is taken as it is");
+            note(
+                "the picture does not record its volume's content, which is therefore not checked",
+            );
             return Ok((source, loaded));
         };
         if *content == loaded.content() {
@@ -204,15 +206,15 @@ fn found(
         }
     }
     Err(Error::input(format!(
-        "{}: not the volume that {} was rendered of: its content is another",
+        "{}: not the volume that {} was rendered from: its content differs",
         shown(&there),
         carried.picture.display()
     ))
-    .hint("say where that is by --volume FILE"))
+    .hint("give that file's place with --volume FILE"))
 }
 
 /// Says so where another version of the program made the picture.
-fn tell_version(carried: &Carried) {
+fn print_version(carried: &Carried) {
     if let Some(version) = carried.version.as_ref().filter(|made| *made != VERSION) {
         note(format_args!(
             "the picture was made by angioray {version}: this is {VERSION}, whose picture may differ"

@@ -42,7 +42,7 @@ pub struct VolumeStats {
     pub kind: &'static str,
     pub spacing_mm: [f64; 3],
     pub origin_mm: [f64; 3],
-    /// Rows of the matrix whose columns are the index axes' directions.
+    /// The rows of the matrix whose columns are the index axes' directions.
     pub direction: [[f64; 3]; 3],
     pub range: [f64; 2],
     pub non_finite: u64,
@@ -89,7 +89,7 @@ pub struct Times {
     pub octree: f64,
     /// Telling from the octree what can be left out.
     pub classify: f64,
-    /// Kernel compilation.
+    /// Time of kernel compilation, ms.
     pub build: f64,
     pub upload: f64,
     /// Computing and uploading precomputed gradients.
@@ -112,9 +112,9 @@ pub struct Memory {
     /// The most that the process held; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
-    /// Of these, precomputed gradients.
+    /// The part of these bytes that holds precomputed gradients.
     pub gradient_bytes: u64,
-    /// From host to device.
+    /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
 }
 
@@ -129,7 +129,7 @@ impl Memory {
     }
 }
 
-/// Of an orbit: the sums over the frames that were made, and each of them.
+/// The statistics of an orbit: the sums over the frames that were made, and each of them.
 #[derive(Serialize)]
 pub struct OrbitStats<'a> {
     /// The scene is that of frame 0.
@@ -139,12 +139,12 @@ pub struct OrbitStats<'a> {
     pub frames: Vec<FrameStats>,
 }
 
-/// What was turned about what, and this process's share of it.
+/// An orbit's axis and angles, and this process's share of it.
 #[derive(Serialize)]
 pub struct OrbitFigures {
     pub frames: u32,
     pub degrees: f64,
-    /// Unit, world space.
+    /// The unit axis of the orbit, world space.
     pub axis: [f64; 3],
     /// Frames that were there already.
     pub kept: usize,

@@ -14,24 +14,21 @@ pub fn between_parts(part: &'static str, ended: ErrorKind) -> Result<()> {
     stop::listen(move |signal| {
         match signal {
             Signal::First => note(format_args!(
-                "stopping after the {part} in work; a second signal ends it at once"
+                "stopping after the current {part}; a second signal stops at once"
             )),
-            Signal::Second => error(&Error::new(
-                ended,
-                "stopped at once; what is finished stays",
-            )),
+            Signal::Second => error(&Error::new(ended, "stopped at once; finished work stays")),
         }
         ended
     })
 }
 
-/// Work that ends at once; `kept` is a sentence on what is left of it.
+/// Work that ends at once; `left` is a sentence on what is left of it.
 ///
 /// # Errors
 /// The system lets no signals be caught.
-pub fn at_once(kept: &'static str) -> Result<()> {
+pub fn at_once(left: &'static str) -> Result<()> {
     stop::end_at_once(move || {
-        let stopped = Error::stopped(format!("stopped before the end; {kept}"));
+        let stopped = Error::stopped(format!("stopped before the end; {left}"));
         error(&stopped.hint("run the same command again"));
         ErrorKind::Stopped
     })

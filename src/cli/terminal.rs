@@ -1,4 +1,4 @@
-//! Everything that is printed: data to stdout, messages to stderr. A reader that has gone away is no
+//! Everything that is printed: data to stdout, messages to stderr. A reader that has closed its end is no
 //! error.
 //!
 //! What is printed quotes file names, headers and scene files, which may contain anything. Characters
@@ -15,7 +15,7 @@ use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 use crate::error::{Error, Result};
 
 /// Writes data for programs to stdout as it is: for a format that has no control characters, or escapes
-/// them by itself. When its reader closes the pipe the rest is not wanted, which is fine.
+/// them. When its reader closes the pipe the rest is not wanted, which is fine.
 pub fn to_stdout(data: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     match data(&mut out).and_then(|()| out.flush()) {
@@ -60,7 +60,7 @@ impl Lines<'_> {
     }
 }
 
-/// Whether nothing but errors is said, as far as that was said already.
+/// Whether only errors are printed, once that is decided.
 static QUIET: OnceLock<bool> = OnceLock::new();
 
 /// Says whether nothing but errors is said from now on. The first call is the one that counts: flags are
@@ -69,7 +69,7 @@ pub fn set_quiet(quiet: bool) {
     let _ = QUIET.set(quiet);
 }
 
-/// Whether nothing but errors is said.
+/// Whether only errors are printed.
 pub fn is_quiet() -> bool {
     QUIET.get().is_some_and(|quiet| *quiet)
 }
@@ -81,7 +81,7 @@ pub fn message(line: impl Display) {
     }
 }
 
-/// A line on stderr. Where that is closed there is nobody to read it.
+/// A line on stderr. If that is closed, nothing reads it.
 fn say(line: impl Display) {
     let _ = Lines(&mut io::stderr().lock()).line(line);
 }
@@ -264,12 +264,12 @@ mod tests {
 
     /// The places in the sources that print by themselves.
     fn printing(text: &str) -> Vec<&str> {
-        const WAYS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
+        const CALLS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
         let code = text.split("#[cfg(test)]").next().unwrap_or_default();
         let lines = code
             .lines()
             .filter(|line| !line.trim_start().starts_with("//"));
-        let lines = lines.filter(|line| WAYS.iter().any(|way| line.contains(way)));
+        let lines = lines.filter(|line| CALLS.iter().any(|call| line.contains(call)));
         lines.collect()
     }
 

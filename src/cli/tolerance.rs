@@ -6,13 +6,13 @@ use crate::lab::tolerance::{self, Choice, SEED, Task};
 use crate::options::{ErrorBound, SceneOptions};
 use crate::scene::Camera;
 
-use super::engine::Caster;
-use super::load::Loaded;
+use super::backend::Caster;
 use super::progress::Bars;
+use super::source::Loaded;
 use super::terminal::note;
 
-/// Chooses the cheapest way of following rays that keeps a bound, and prints the choice. The reference has
-/// but one way, which is what all errors are taken against: it needs no choice, whatever the bound.
+/// Chooses the cheapest setting that meets a bound, and prints the choice. The reference has only
+/// one, against which all errors are measured: it needs no choice, whatever the bound.
 pub fn choose(
     bound: ErrorBound,
     options: &SceneOptions,
@@ -24,7 +24,7 @@ pub fn choose(
 ) -> Result<Option<Choice>> {
     let Caster::Device { renderer, .. } = caster else {
         note(format_args!(
-            "max-error {bound}: the reference is what errors are held against, nothing is chosen"
+            "max-error {bound}: errors are measured against the reference, so nothing is chosen"
         ));
         return Ok(None);
     };

@@ -9,6 +9,7 @@ use super::layers::Plane;
 
 /// One channel of a frame.
 pub(super) struct Channel<'a> {
+    /// The channel's name in the file, such as `R` or `normal.X`.
     pub name: &'static str,
     samples: Samples<'a>,
 }

@@ -15,7 +15,7 @@ use super::wanted::Wanted;
 pub struct Frame {
     /// The size in pixels.
     pub size: ImageSize,
-    /// Linear light, premultiplied, without background.
+    /// The colour: linear light, premultiplied, without background.
     pub color: Vec<[f32; 4]>,
     /// sRGB-encoded 0..1, opaque, after background and tone curve: what display formats hold.
     pub display: Option<Vec<[f32; 4]>>,
@@ -56,8 +56,8 @@ impl Frame {
         self.layers.plane_mut(key)
     }
 
-    /// Some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in this
-    /// order.
+    /// Picks some pixels, by their numbers row by row: a picture of one row, whose pixels are they, in
+    /// this order.
     ///
     /// # Errors
     /// No pixel, or more than a row has.
@@ -90,8 +90,8 @@ impl Frame {
         planes
     }
 
-    /// Whether another picture shows the same to the last bit, in all planes but the counters, which say how
-    /// it was made.
+    /// Whether another picture is bit-identical in all planes but the counters, which say how it was
+    /// made.
     pub fn bit_equal(&self, other: &Self) -> bool {
         fn same<T: bytemuck::NoUninit>(a: &[T], b: &[T]) -> bool {
             bytemuck::cast_slice::<T, u8>(a) == bytemuck::cast_slice::<T, u8>(b)

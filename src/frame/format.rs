@@ -16,10 +16,15 @@ const WEBP_MAX_SIDE_PX: u32 = 16_383;
 /// A picture's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
+    /// PNG: the displayed picture without loss, and its scene.
     Png,
+    /// OpenEXR: linear light and all layers as floats, and the scene.
     Exr,
+    /// JPEG: the displayed picture, with loss.
     Jpeg,
+    /// WebP: the displayed picture, without loss.
     WebP,
+    /// NumPy's array file: linear light and all layers as floats.
     Npy,
 }
 
@@ -51,7 +56,7 @@ impl Format {
             Some(extension) => {
                 format!("'.{extension}' is not a picture format that can be written")
             }
-            None => "the name has no extension that says the picture's format".to_owned(),
+            None => "the name has no extension that gives the picture's format".to_owned(),
         };
         let names: Vec<_> = EXTENSIONS
             .iter()
@@ -61,18 +66,18 @@ impl Format {
             .hint(format!("use one of {}", names.join(" "))))
     }
 
-    /// Whether it holds the picture as displayed (sRGB-encoded, opaque): [`super::Frame::display`].
-    /// The others hold linear light with alpha.
+    /// Whether the format holds the picture as displayed (sRGB-encoded, opaque):
+    /// [`super::Frame::display`]. The others hold linear light with alpha.
     pub fn is_display(self) -> bool {
         !self.carries_layers()
     }
 
-    /// Whether it carries the scene and the version as texts.
+    /// Whether the format carries the scene and the version as texts.
     pub fn carries_metadata(self) -> bool {
         matches!(self, Self::Png | Self::Exr)
     }
 
-    /// Whether it holds the layers beside the colour.
+    /// Whether the format holds the layers beside the colour.
     pub fn carries_layers(self) -> bool {
         matches!(self, Self::Exr | Self::Npy)
     }
@@ -81,23 +86,27 @@ impl Format {
 /// Bits per channel of a PNG (`--bit-depth`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BitDepth {
+    /// 8 bits.
     Eight,
+    /// 16 bits.
     Sixteen,
 }
 
 /// How a picture is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Encoding {
+    /// The file format.
     pub format: Format,
     /// The bits per channel of a PNG.
     pub bit_depth: BitDepth,
     /// The quality of a JPEG, 1 (small) to 100 (good).
     pub quality: u8,
-    /// Beside the colour, in any order; EXR and NPY only.
+    /// The layers beside the colour, in any order; EXR and NPY only.
     pub layers: Vec<Layer>,
 }
 
 impl Encoding {
+    /// The quality of a JPEG if none is given.
     pub const DEFAULT_QUALITY: u8 = 92;
 
     /// `format` with its defaults: 8 bits, [`Self::DEFAULT_QUALITY`], the colour alone.
@@ -110,7 +119,7 @@ impl Encoding {
         }
     }
 
-    /// That the format can do what is asked of it; [`super::write`] checks it too.
+    /// Checks that the format supports this encoding; [`super::write`] checks it too.
     ///
     /// # Errors
     /// Layers in a format without, 16 bits in another format than PNG, a quality outside 1..=100
@@ -137,7 +146,7 @@ impl Encoding {
         Ok(())
     }
 
-    /// That a picture of this size fits into the format; [`super::write`] checks it too. All but
+    /// Checks that a picture of this size fits into the format; [`super::write`] checks it too. All but
     /// WebP hold every [`ImageSize`]: JPEG's limit is [`ImageSize::MAX_SIDE_PX`] itself.
     ///
     /// # Errors

@@ -81,7 +81,8 @@ macro_rules! layers {
 }
 
 layers! {
-    /// mm from the eye along the ray (from the eye plane in orthographic projection); +∞: none.
+    /// Distance from the eye along the ray, mm (from the eye plane in orthographic projection); +∞:
+    /// none.
     Depth, DEPTH: f32 = Some(FillValue::Scalar(f32::INFINITY)), "depth", ["depth.Z"];
     /// The unit normal in world space, toward lower values; 0 where nothing is hit.
     Normal, NORMAL: [f32; 3] = Some(FillValue::Vector([0.0; 3])), "normal", ["normal.X", "normal.Y", "normal.Z"];

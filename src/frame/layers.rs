@@ -155,7 +155,7 @@ impl Layers {
         self.insert_plane(key.layer(), T::plane(entries));
     }
 
-    /// As [`Layers::insert`], for a plane whose type is known at run time.
+    /// Inserts a plane whose type is known at run time only; see [`Layers::insert`].
     pub fn insert_plane(&mut self, layer: Layer, plane: Plane) {
         self.0[layer as usize] = Some(plane);
     }
@@ -171,7 +171,7 @@ impl Layers {
         planes.filter_map(|(layer, plane)| Some((layer, plane.as_ref()?)))
     }
 
-    /// As [`Layers::iter`], to be changed.
+    /// Iterates over the layers and their planes, which may be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (Layer, &mut Plane)> {
         let planes = Layer::ALL.into_iter().zip(&mut self.0);
         planes.filter_map(|(layer, plane)| Some((layer, plane.as_mut()?)))

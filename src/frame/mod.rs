@@ -18,9 +18,9 @@ mod percentile;
 mod pixel;
 mod png;
 mod quantize;
+mod verify;
 mod wanted;
 mod webp;
-mod whole;
 mod write;
 
 pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
@@ -34,6 +34,6 @@ pub use metadata::{carrier, read_encoding, read_metadata};
 pub use percentile::{median, percentile};
 pub use pixel::{Certificate, Kind};
 pub use png::read_display;
+pub use verify::is_complete;
 pub use wanted::Wanted;
-pub use whole::is_whole;
 pub use write::write;

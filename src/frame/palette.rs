@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_3;
 /// An sRGB colour.
 pub type Rgb = [u8; 3];
 
-/// Of the ends in Msh space, CIELAB's lightness, chroma and hue in polar form: both as long and as
-/// far from grey, blue and red.
+/// The length of the palette's ends in Msh space (CIELAB's lightness, chroma and hue in polar form):
+/// both are as long, and as far from grey, blue and red.
 const END_LENGTH: f64 = 80.0;
 const END_SATURATION: f64 = 1.08;
 const BLUE_HUE: f64 = -1.1;

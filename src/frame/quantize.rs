@@ -18,7 +18,7 @@ pub(super) fn rgb8(frame: &Frame) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Like [`rgb8`] with 0..65535, two bytes a channel, the high byte first.
+/// Quantizes like [`rgb8`] to 0..65535, two bytes a channel, the high byte first.
 pub(super) fn rgb16_big_endian(frame: &Frame) -> Result<Vec<u8>> {
     let display = display_of(frame)?;
     let mut bytes = memory::room(6 * display.len(), "the picture's bytes")?;

@@ -24,13 +24,13 @@ impl Wanted {
         layers: [false; Layer::COUNT],
     };
 
-    /// A picture to be looked at, without layers.
+    /// A picture for display, without layers.
     pub const DISPLAY: Self = Self {
         display: true,
         ..Self::NONE
     };
 
-    /// The same and these layers.
+    /// Adds these layers.
     #[must_use]
     pub const fn with<const N: usize>(mut self, layers: [Layer; N]) -> Self {
         let mut n = 0;
@@ -41,14 +41,14 @@ impl Wanted {
         self
     }
 
-    /// The same and this layer, if `wanted`.
+    /// Adds this layer if `wanted`.
     #[must_use]
     pub const fn with_if(mut self, wanted: bool, layer: Layer) -> Self {
         self.layers[layer as usize] |= wanted;
         self
     }
 
-    /// The same without these layers.
+    /// Removes these layers.
     #[must_use]
     pub const fn without<const N: usize>(mut self, layers: [Layer; N]) -> Self {
         let mut n = 0;

@@ -11,7 +11,7 @@ pub(super) const POCL_FOLDER: &str = "POCL_CACHE_DIR";
 
 static ARRANGED: OnceLock<Arranged> = OnceLock::new();
 
-/// What [`super::process::begin`] arranged.
+/// The environment that [`super::process::begin`] has set up.
 pub(super) struct Arranged {
     /// A folder for what drivers write; nothing where there is no place for it.
     pub scratch: Option<Scratch>,
@@ -22,7 +22,7 @@ pub(super) fn arrange(arranged: Arranged) {
     let _ = ARRANGED.set(arranged);
 }
 
-/// What the process arranged; nothing in a library.
+/// The environment that the process has set up; `None` in a library.
 pub(super) fn arranged() -> Option<&'static Arranged> {
     ARRANGED.get()
 }
@@ -31,7 +31,7 @@ impl Arranged {
     /// The folder that drivers are given, made if need be.
     ///
     /// # Errors
-    /// Why there is none, as a clause.
+    /// The reason why there is none, as a clause.
     pub fn folder(&self) -> Result<&Path, String> {
         let Some(scratch) = &self.scratch else {
             return Err("no place takes files that may be loaded as programs".to_owned());

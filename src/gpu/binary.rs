@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use ocl::core::{self, Program, ProgramInfo, ProgramInfoResult};
 
+use crate::cache::{self, CacheFolder};
 use crate::error::{Error, Result};
-use crate::kept::{self, Kept};
 
 use super::arranged::arranged;
 use super::device_info::DeviceInfo;
@@ -29,7 +29,7 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Where built programs are cached; nowhere where there is no place for them.
 #[derive(Debug)]
 pub struct Binaries {
-    cache: Option<Kept>,
+    cache: Option<CacheFolder>,
     /// Why they are not cached, where that was not the user's wish.
     note: Option<String>,
 }
@@ -51,18 +51,18 @@ impl Binaries {
                 ))
             }),
             None => {
-                let Some(folder) = kept::users_folder() else {
-                    return Ok(Self::not_cached("there is no cache folder of this user"));
+                let Some(folder) = cache::user_folder() else {
+                    return Ok(Self::not_cached("this user has no cache folder"));
                 };
                 Ok(Self::in_folder(&folder).unwrap_or_else(Self::not_cached))
             }
         }
     }
 
-    /// What is in the folder is used even where nothing can be added.
+    /// Opens the cache in a folder; what is there is used even if nothing can be added.
     fn in_folder(folder: &Path) -> Result<Self> {
-        let cache = Kept::in_folder(folder, EXTENSION)?;
-        let note = kept::check_takes_files(folder).err().map(not_cached);
+        let cache = CacheFolder::in_folder(folder, EXTENSION)?;
+        let note = cache::check_writable(folder).err().map(not_cached);
         Ok(Self {
             cache: Some(cache),
             note,
@@ -128,9 +128,9 @@ fn not_cached(why: impl Display) -> String {
     )
 }
 
-/// The binary in a file of [`packed`] bytes; nothing where there is none, or none that is whole.
+/// The binary in a file of [`packed`] bytes; `None` if there is none, or it is damaged.
 pub fn read(path: &Path) -> Option<Vec<u8>> {
-    let bytes = kept::read(path, MAX_BYTES).ok()?;
+    let bytes = cache::read(path, MAX_BYTES).ok()?;
     unpacked(&bytes).map(<[u8]>::to_owned)
 }
 
@@ -158,7 +158,7 @@ pub fn packed(binary: &[u8]) -> Vec<u8> {
 
 /// Stores a binary in `path`. Where that cannot be done it is built again.
 pub fn store(path: &Path, binary: &[u8]) {
-    let _ = kept::write(path, |out| {
+    let _ = cache::write(path, |out| {
         out.write_all(&packed(binary))
             .map_err(|cause| Error::writing(path, "write", &cause))
     });

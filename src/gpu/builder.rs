@@ -40,17 +40,21 @@ const LAST_WORDS: usize = 400;
 pub struct Request {
     /// The place of the device in the list, and what is there.
     pub device: usize,
+    /// The properties of that device ([`identity`]): another one may have its place by now.
     pub identity: [String; 4],
     /// The kernel's file for messages: `kernels/<path>`.
     pub path: String,
+    /// The flattened source in OpenCL C.
     pub source: String,
+    /// The compiler's options.
     pub options: String,
+    /// The kernel's name.
     pub kernel: String,
     /// Names and types of its arguments.
     pub signature: Vec<(String, String)>,
 }
 
-/// What distinguishes a device from another that has its place now.
+/// Properties that distinguish a device from another that has its place now.
 pub fn identity(info: &DeviceInfo) -> [String; 4] {
     [&info.name, &info.platform, &info.driver, &info.version].map(Clone::clone)
 }
@@ -60,17 +64,19 @@ pub fn identity(info: &DeviceInfo) -> [String; 4] {
 pub enum Answer {
     /// The driver's binary.
     Built(Vec<u8>),
-    /// No other process can build here, or the driver gives no binaries.
+    /// The kernel must be built in this process: no other can build it here, or the driver gives no
+    /// binaries.
     NotHere,
 }
 
-/// Has kernels built, one after another, by a process that is started when it is first needed.
+/// Builds kernels one after another, in a process that is started when it is first needed.
 pub struct Builders<'a> {
     arranged: &'a Arranged,
     current: Option<Builder>,
 }
 
 impl<'a> Builders<'a> {
+    /// Makes builders, of which none is started yet.
     pub fn new(arranged: &'a Arranged) -> Self {
         Self {
             arranged,
@@ -78,7 +84,7 @@ impl<'a> Builders<'a> {
         }
     }
 
-    /// Has a kernel built. Ends the process when it is time to stop, or `no_longer_wanted`.
+    /// Builds a kernel. Ends the process when it is time to stop, or `no_longer_wanted`.
     ///
     /// # Errors
     /// The kernel does not build; the driver ended the process; it is time to stop.
@@ -102,7 +108,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// Nothing where no process can be started.
+    /// Starts a process that builds kernels; `None` if none can be started.
     fn start(arranged: &Arranged) -> Option<Self> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -141,7 +147,7 @@ impl Builder {
         let mut line = serde_json::to_vec(request).map_err(|cause| failed(&cause))?;
         line.push(b'\n');
         if let Some(stdin) = &mut self.child.stdin {
-            // A process that is no more is found below.
+            // A process that has ended is noticed below.
             let _ = stdin.write_all(&line);
         }
         loop {
@@ -152,7 +158,7 @@ impl Builder {
             if let Some(status) = self.child.try_wait().map_err(|cause| failed(&cause))? {
                 return Err(self.failure(request, status));
             }
-            if stop::asked() || no_longer_wanted.load(Ordering::Relaxed) {
+            if stop::requested() || no_longer_wanted.load(Ordering::Relaxed) {
                 return Err(Error::stopped("stopped while kernels were built"));
             }
             std::thread::sleep(POLL);
@@ -257,7 +263,7 @@ mod tests {
         }
         let elsewhere = packed(Err(Error::no_device("another")));
         assert_eq!(unpacked(&elsewhere), Ok(Answer::NotHere));
-        // A damaged binary is none.
+        // A damaged binary is not taken.
         let mut damaged = packed(Ok(Some(binary)));
         *damaged.last_mut().unwrap() ^= 1;
         assert_eq!(unpacked(&damaged), Ok(Answer::NotHere));

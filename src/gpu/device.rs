@@ -88,7 +88,7 @@ impl Device {
         Self::open(platform, device_id, info)
     }
 
-    /// From now on `listener` hears of kernels that are built: a stage of as many units as there are.
+    /// Reports kernels that are built to `listener` from now on: a stage of as many units as there are.
     #[must_use]
     pub fn heard_by(mut self, listener: impl Progress + Send + 'static) -> Self {
         self.listener = Box::new(listener);
@@ -119,7 +119,7 @@ impl Device {
         })
     }
 
-    /// What is known of the device.
+    /// The properties of the device.
     pub fn info(&self) -> &DeviceInfo {
         &self.info
     }
@@ -181,7 +181,7 @@ impl Device {
 
 /// Every usable device with its platform. Devices that do not answer are left out.
 fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
-    const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one by '--device reference'";
+    const INSTALL: &str = "install a driver, such as PoCL for any CPU ('scripts/setup.sh', or Debian's pocl-opencl-icd and ocl-icd-libopencl1), or render without one with '--device reference'";
     // Drivers set themselves up at the first call, and not all of them can do it in two threads at once.
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _one = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
@@ -216,7 +216,8 @@ fn found() -> Result<Vec<(PlatformId, DeviceId, DeviceInfo)>> {
     Ok(found)
 }
 
-/// Whether any driver is installed: found out first, because `ocl` waits ten seconds for one to appear.
+/// Whether any driver is installed. This is checked first, because `ocl` waits ten seconds for one to
+/// appear.
 fn any_platform() -> bool {
     let mut count = 0;
     // SAFETY: no list of length 0 makes OpenCL give the count alone.

@@ -6,7 +6,7 @@ use ocl::core::{
     self, DeviceId, DeviceInfo as Query, DeviceInfoResult, DeviceType, PlatformId, PlatformInfo,
 };
 
-/// What kind of processor a device is.
+/// The kind of processor that a device is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceKind {
     /// The host's own processor.
@@ -27,10 +27,10 @@ impl fmt::Display for DeviceKind {
     }
 }
 
-/// What `angioray devices` prints of a device.
+/// The properties of a device that `angioray devices` prints.
 #[derive(Debug, Clone)]
 pub struct DeviceInfo {
-    /// Its place in the list of all platforms' devices: `--device ID`.
+    /// The device's place in the list of all platforms' devices: `--device ID`.
     pub id: usize,
     /// The device's name.
     pub name: String,
@@ -40,11 +40,11 @@ pub struct DeviceInfo {
     pub driver: String,
     /// The OpenCL version that it speaks.
     pub version: String,
-    /// What kind of processor it is.
+    /// The kind of processor.
     pub kind: DeviceKind,
     /// How many of its units compute at once.
     pub compute_units: u32,
-    /// Its whole memory.
+    /// The size of the device's memory, bytes.
     pub memory_bytes: u64,
     /// The most memory that it gives in one piece.
     pub max_allocation_bytes: u64,

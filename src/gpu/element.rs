@@ -7,6 +7,7 @@ use bytemuck::Pod;
 /// # Safety
 /// `CL_NAME` must be an OpenCL C type of the same size and layout.
 pub unsafe trait Element: Pod {
+    /// The type's name in OpenCL C.
     const CL_NAME: &'static str;
 }
 

@@ -16,12 +16,16 @@ use super::status::device_error;
 /// The content of a texel. Kernels read all of them as floats: integers as shares of their type's largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channel {
+    /// Unsigned 8-bit integers, read as 0..1.
     Unorm8,
+    /// Unsigned 16-bit integers, read as 0..1.
     Unorm16,
+    /// Single-precision floats.
     Float,
 }
 
 impl Channel {
+    /// The size of a texel in bytes.
     pub fn bytes(self) -> usize {
         match self {
             Self::Unorm8 => 1,
@@ -55,7 +59,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Whether the device can hold an image of so many texels along x, y and z.
+    /// Checks that the device can hold an image of so many texels along x, y and z.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of this channel.
@@ -84,7 +88,7 @@ impl Image {
             format.channel_order == ImageChannelOrder::R
                 && format.channel_data_type == channel.data_type()
         };
-        // Formats that are not known here are none of ours.
+        // Formats that are not known here are not used.
         if !formats.iter().flatten().any(fits) {
             return refused(format!(
                 "the device '{name}' has no three-dimensional images of {}",

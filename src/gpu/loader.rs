@@ -3,7 +3,7 @@
 //! Defines the symbols which `cl-sys` declares and forwards each to the system's OpenCL loader
 //! (`build.rs` says why). On macOS the framework is linked as usual and nothing is defined here.
 
-/// Whether an OpenCL library could be opened; if not, the reason.
+/// Opens an OpenCL library; if none can be opened, returns the reason.
 #[cfg(target_os = "macos")]
 pub fn open() -> Result<(), String> {
     Ok(())
@@ -45,11 +45,12 @@ mod forward {
         })
     }
 
+    /// Opens an OpenCL library; if none can be opened, returns the reason.
     pub fn open() -> Result<(), String> {
         library().as_ref().map(|_| ()).map_err(Clone::clone)
     }
 
-    /// What a call gives when there is no library: only reached by callers that skipped [`open`].
+    /// The result of a call when there is no library: only reached by callers that skipped [`open`].
     trait Absent {
         fn absent() -> Self;
     }

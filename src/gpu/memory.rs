@@ -84,6 +84,7 @@ impl AnyBuffer {
         Ok(buffer)
     }
 
+    /// The size of the buffer in bytes.
     pub fn bytes(&self) -> u64 {
         self.bytes as u64
     }

@@ -16,8 +16,9 @@ use super::scratch::Scratch;
 /// and its binaries hold the one for all sizes only.
 const POCL_SPECIALIZATION: &str = "POCL_WORK_GROUP_SPECIALIZATION";
 
-/// What the program's `main` does first: sets what drivers read from the environment. The folder
-/// that they are given is made when a device is first looked for, and removed with what is returned here.
+/// Sets what drivers read from the environment; to be called first in the program's `main`. The folder
+/// that they are given is created when a device is first looked for, and removed when the returned value
+/// is dropped.
 ///
 /// # Safety
 /// No other thread may run: they may be reading the environment.

@@ -8,9 +8,9 @@ use std::thread::available_parallelism;
 
 use ocl::core::{self, Kernel, Program, ProgramBuildInfo};
 
+use crate::cache::mark_used;
 use crate::crash;
 use crate::error::{Error, Result};
-use crate::kept::asked_for;
 use crate::progress::Stage;
 
 use super::arranged::{Arranged, arranged};
@@ -26,6 +26,7 @@ use super::{binary, source};
 pub struct Defines(Vec<(&'static str, String)>);
 
 impl Defines {
+    /// Adds a constant.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.0.push((name, value.to_string()));
@@ -49,14 +50,18 @@ impl Defines {
 
 /// A kernel that is wanted: `name` of `kernels/<path>`, which has the arguments of `signature`.
 pub(super) struct Order<'a> {
+    /// The kernel's file below `kernels`.
     pub path: String,
+    /// The kernel's name.
     pub name: &'static str,
+    /// The constants that the kernel is built with.
     pub defines: &'a Defines,
+    /// The kernel's arguments.
     pub signature: &'a [Parameter],
 }
 
 /// Builds kernels, in the order given, or takes them from the cache of built programs. The device's
-/// listener hears of those that are built.
+/// listener is notified of those that are built.
 ///
 /// # Errors
 /// A source does not build on this device, then the message holds the compiler's first lines; or its
@@ -167,7 +172,7 @@ impl<'a> Plan<'a> {
         let binary = binary::read(path)?;
         crash::suspect(path);
         let kernel = self.taken_from(device, &binary)?;
-        asked_for(path);
+        mark_used(path);
         Some(kernel)
     }
 
@@ -260,7 +265,7 @@ fn compile(device: &Device, program: &Program, options: &CString) -> core::Resul
     core::build_program(program, Some(&[device.device_id()]), options, None, None)
 }
 
-/// The compiler's first lines.
+/// The error of a program that does not build: the compiler's first lines.
 fn not_built(device: &Device, program: &Program, path: &str, error: &core::Error) -> Error {
     let log = core::get_program_build_info(program, device.device_id(), ProgramBuildInfo::BuildLog)
         .map(|log| log.to_string())

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::kept;
+use crate::cache;
 
 /// The start of such folders' names.
 const PREFIX: &str = "angioray-driver-";
@@ -43,7 +43,7 @@ impl Scratch {
             named("XDG_RUNTIME_DIR"),
             Some("/dev/shm".into()),
             Some(std::env::temp_dir()),
-            kept::users_folder(),
+            cache::user_folder(),
             Some("/var/tmp".into()),
         ];
         let mut places = places.into_iter().flatten();
@@ -52,7 +52,7 @@ impl Scratch {
             .map(|place| Self::below(&place))
     }
 
-    /// A folder below `place`, of a name that nobody can foresee.
+    /// A folder below `place`, with an unpredictable name.
     fn below(place: &Path) -> Self {
         let [a, b] = [(); 2].map(|()| RandomState::new().hash_one(std::process::id()));
         Self {
@@ -61,12 +61,13 @@ impl Scratch {
         }
     }
 
+    /// The folder's path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// Makes the folder, for this user alone, unless it is made; then removes beside it what processes left
-    /// that are no more.
+    /// that have ended.
     ///
     /// # Errors
     /// It cannot be made.
@@ -99,7 +100,7 @@ impl Scratch {
         }
     }
 
-    /// Folders like this one whose processes are no more, as far as they can be removed.
+    /// Removes folders like this one whose processes have ended, as far as that is possible.
     fn sweep(&self) {
         let Some(place) = self.path.parent() else {
             return;
@@ -115,7 +116,7 @@ impl Scratch {
         }
     }
 
-    /// Whether a folder was this user's and nobody holds it.
+    /// Whether a folder belonged to a process of this user that no longer runs.
     fn is_left(&self, folder: &Path) -> bool {
         let (Ok(there), Ok(own)) = (folder.symlink_metadata(), self.path.symlink_metadata()) else {
             return false;
@@ -123,7 +124,7 @@ impl Scratch {
         if !there.is_dir() || !same_owner(&there, &own) {
             return false;
         }
-        match kept::open(&folder.join(HELD)) {
+        match cache::open(&folder.join(HELD)) {
             Ok(lock) => lock.try_lock().is_ok(),
             Err(_) => {
                 let age = there.modified().ok().and_then(|made| made.elapsed().ok());
@@ -144,7 +145,8 @@ fn same_owner(_: &fs::Metadata, _: &fs::Metadata) -> bool {
     true
 }
 
-/// Whether files can be made in a place, and loaded as programs, which some mounts forbid; and have room.
+/// Whether files can be created in a folder and loaded as programs, which some mounts forbid, and there
+/// is enough space.
 fn is_fit(place: &Path) -> bool {
     #[cfg(unix)]
     {
@@ -157,7 +159,7 @@ fn is_fit(place: &Path) -> bool {
             return false;
         }
     }
-    place.is_absolute() && place.is_dir() && kept::check_takes_files(place).is_ok()
+    place.is_absolute() && place.is_dir() && cache::check_writable(place).is_ok()
 }
 
 #[cfg(test)]

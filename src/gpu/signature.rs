@@ -11,7 +11,9 @@ use super::status::device_error;
 /// One argument of a kernel, as its Rust function gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Parameter {
+    /// The argument's name.
     pub name: &'static str,
+    /// The argument's type.
     pub of: ParameterType,
 }
 
@@ -23,7 +25,8 @@ pub(super) enum ParameterType {
     Value(&'static str),
 }
 
-/// As OpenCL reports it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a value.
+/// The type as OpenCL reports it: `float*` for a buffer, `image3d_t` for an image, `RayGrid` for a
+/// value.
 impl fmt::Display for ParameterType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -13,7 +13,9 @@ use super::status::device_error;
 /// How long one pass ran on the device.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PassTime {
+    /// The pass's name.
     pub name: &'static str,
+    /// The time in ms, on the device's clock.
     pub ms: f64,
 }
 
@@ -30,7 +32,7 @@ impl Timings {
         self.waiting.push(launch);
     }
 
-    /// Builds the passes that are not built yet; returns the time in ms, 0 where there are none.
+    /// Builds the passes that are not built yet; returns the time in ms, 0 if there are none.
     ///
     /// # Errors
     /// One does not build.

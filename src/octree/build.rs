@@ -24,7 +24,7 @@ fn span(leaf: u32, l: u32, leaves: u32, voxels: u32) -> (usize, usize, usize) {
     (first as usize, touched_end as usize, own_end as usize)
 }
 
-/// The nodes' ranges, and the sums of their own voxels: with the counts, which the grid tells, they make
+/// The nodes' ranges, and the sums of their own voxels: with the counts, which follow from the grid, they make
 /// exact averages at every level.
 struct Nodes<'a> {
     ranges: &'a mut [[f32; 2]],

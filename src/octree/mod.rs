@@ -12,14 +12,17 @@ use std::str::FromStr;
 
 use crate::error::{Error, Result};
 
-/// The edge of a finest node in cells: 4 to 32, 4 unless chosen: beams of rays skip more than with the 8 of
+/// The edge of a finest node in cells: 4 to 32, 4 unless chosen: ray packets skip more than with the 8 of
 /// Lesar et al. 2015 (level 3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Leaf(u32);
 
 impl Leaf {
+    /// The possible edges, in cells.
     pub const ALLOWED: std::ops::RangeInclusive<u32> = 4..=32;
 
+    /// Makes a leaf of this edge, in cells.
+    ///
     /// # Errors
     /// An edge outside [`Leaf::ALLOWED`].
     pub fn new(edge: u32) -> Result<Self> {
@@ -34,7 +37,7 @@ impl Leaf {
         }
     }
 
-    /// Cells along an edge.
+    /// The number of cells along an edge.
     pub fn edge(self) -> u32 {
         self.0
     }
@@ -72,11 +75,12 @@ impl fmt::Display for Leaf {
 pub struct Level {
     /// Nodes along x, y, z.
     pub size: [u32; 3],
-    /// Of the level's first node in the tree's arrays; nodes follow x fastest.
+    /// The index of the level's first node in the tree's arrays; nodes follow x fastest.
     pub offset: u32,
 }
 
 impl Level {
+    /// The number of nodes of the level.
     pub fn nodes(&self) -> usize {
         self.size.iter().map(|&n| n as usize).product()
     }
@@ -93,27 +97,28 @@ pub struct Octree {
 }
 
 impl Octree {
+    /// The edge of the finest nodes.
     pub fn leaf(&self) -> Leaf {
         self.leaf
     }
 
-    /// Leaves first, the single root last.
+    /// The levels, leaves first, the single root last.
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
 
-    /// Minimum and maximum over every voxel that the node's cells touch.
+    /// The minimum and the maximum over every voxel that a node's cells touch, for each node.
     pub fn ranges(&self) -> &[[f32; 2]] {
         &self.ranges
     }
 
-    /// Mean of the node's own voxels: those at its cells' lower corners, and at the volume's upper
-    /// faces for the nodes that reach them. Every voxel belongs to exactly one leaf.
+    /// The mean of each node's own voxels: those at its cells' lower corners, and at the volume's upper
+    /// faces for the nodes that touch them. Every voxel belongs to exactly one leaf.
     pub fn averages(&self) -> &[f32] {
         &self.averages
     }
 
-    /// Of all nodes' minima, maxima and averages.
+    /// The size of all nodes' minima, maxima and averages, in bytes.
     pub fn bytes(&self) -> u64 {
         (size_of_val(&*self.ranges) + size_of_val(&*self.averages)) as u64
     }

@@ -188,7 +188,7 @@ impl CameraOptions {
         Ok((Lens::Perspective { fov_deg }, Self { fov, ..none }))
     }
 
-    /// By `azimuth`, `elevation` and `roll`, in this order.
+    /// Turns an orientation by `azimuth`, `elevation` and `roll`, in this order.
     fn turn(&self, orientation: Orientation) -> Orientation {
         let degrees = |angle: Option<AngleDeg>| angle.map_or(0.0, AngleDeg::get);
         orientation

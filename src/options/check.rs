@@ -6,8 +6,8 @@ use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
 use crate::scene::{Mode, SamplingMethod};
 
-/// In which order needs are checked: that an option belongs to another mode says more than that something
-/// else is missing.
+/// The order in which needs are checked: that an option belongs to another mode says more than that
+/// something else is missing.
 const FIRST_NEEDS: [fn(Need) -> bool; 4] = [
     |need| need == Need::Eye,
     |need| matches!(need, Need::Modes(..)),
@@ -29,7 +29,7 @@ impl SceneOptions {
             && quad.sampling() != method
         {
             return Err(Error::usage(format!(
-                "'sampling' = {method} does not go with 'quad' = {quad}, which is {}",
+                "'sampling' = {method} cannot be combined with 'quad' = {quad}, which is {}",
                 quad.sampling()
             ))
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
@@ -102,16 +102,20 @@ impl SceneOptions {
         match need {
             Need::Modes(modes, why) => {
                 let modes: Vec<&str> = modes.iter().map(|mode| Mode::name(*mode)).collect();
-                Error::usage(format!("'{option}' does not go with mode '{mode}': {why}"))
-                    .hint(format!("it belongs to mode {}", modes.join(", ")))
+                Error::usage(format!(
+                    "'{option}' cannot be combined with mode '{mode}': {why}"
+                ))
+                .hint(format!("it belongs to mode {}", modes.join(", ")))
             }
             Need::Precomputed(why) => Error::usage(format!(
-                "'{option}' does not go with gradient '{}': {why}",
+                "'{option}' cannot be combined with gradient '{}': {why}",
                 self.picture.gradient_method()
             ))
             .hint("it belongs to gradient precomputed"),
-            Need::Eye => Error::usage("'up' goes with 'eye' alone: a view has an up of its own")
-                .hint("'roll' turns a view about its line of sight"),
+            Need::Eye => {
+                Error::usage("'up' can only be given with 'eye': a view has an up of its own")
+                    .hint("'roll' turns a view about its line of sight")
+            }
             Need::Homogeneity => Error::usage(format!(
                 "'homogeneity-rule' {} has no effect without 'homogeneity', its limit",
                 self.picture.homogeneity_rule.unwrap_or_default()

@@ -3,7 +3,7 @@
 use super::text_form::text_form;
 use crate::scene::enum_names::enum_names;
 
-/// `--shading`.
+/// The shading of a surface or a medium (`--shading`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shading {
     None,
@@ -12,7 +12,7 @@ pub enum Shading {
 }
 enum_names!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "blinn-phong");
 
-/// `--gradient`.
+/// The method by which gradients are computed (`--gradient`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GradientMethod {
     #[default]
@@ -44,13 +44,13 @@ impl From<bool> for Switch {
     }
 }
 
-/// What NaN and ±Inf voxels are read as (`--non-finite`).
+/// The treatment of NaN and ±Inf voxels (`--non-finite`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NonFiniteRule {
-    /// As the smallest finite value of the volume.
+    /// They are read as the smallest finite value of the volume.
     #[default]
     Replace,
-    /// Not at all: they are an error.
+    /// They are refused as an error.
     Refuse,
 }
 enum_names!(NonFiniteRule, "a rule for NaN and infinite voxels": Replace = "replace", Refuse = "refuse");

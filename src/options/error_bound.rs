@@ -40,7 +40,7 @@ impl ErrorMetric {
         Self::Value,
     ];
 
-    /// As users write it.
+    /// The metric's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rmse => "rmse",
@@ -99,6 +99,8 @@ pub struct ErrorBound {
 }
 
 impl ErrorBound {
+    /// Makes a bound of a metric.
+    ///
     /// # Errors
     /// A bound that the metric cannot have.
     pub fn new(metric: ErrorMetric, bound: f64) -> Result<Self> {
@@ -116,7 +118,7 @@ impl ErrorBound {
         self.metric
     }
 
-    /// In the metric's unit.
+    /// The bound, in the metric's unit.
     pub fn bound(self) -> f64 {
         self.bound
     }
@@ -129,6 +131,8 @@ impl ErrorBound {
         }
     }
 
+    /// Checks that pictures of this mode have such an error.
+    ///
     /// # Errors
     /// Usage: pictures of the mode have no such error.
     pub fn check(self, mode: Mode) -> Result<()> {
@@ -145,7 +149,7 @@ impl ErrorBound {
             .map(ErrorMetric::name)
             .collect();
         Err(Error::usage(format!(
-            "'max-error' {metric} does not go with mode '{mode}': {why}"
+            "'max-error' {metric} cannot be combined with mode '{mode}': {why}"
         ))
         .hint(format!("mode {mode} has {}", there.join(", "))))
     }

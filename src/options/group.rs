@@ -5,9 +5,9 @@ pub(crate) trait Keys: Sized {
     /// Returns the keys of those given.
     fn given(&self) -> Vec<String>;
 
-    /// The same options without those whose key does not pass.
+    /// Returns the options whose key passes.
     #[must_use]
-    fn keeping(self, passes: impl Fn(&str) -> bool) -> Self;
+    fn retaining(self, passes: impl Fn(&str) -> bool) -> Self;
 }
 
 /// Declares a struct whose fields are all optional, with `over`: what it says, and for what it
@@ -29,7 +29,7 @@ macro_rules! group {
         }
 
         impl $name {
-            /// The same options, those not given taken from `base`.
+            /// Returns these options, those not given taken from `base`.
             #[must_use]
             pub fn over(self, base: Self) -> Self {
                 Self { $($field: self.$field.or(base.$field),)* }
@@ -45,7 +45,7 @@ macro_rules! group {
                 keys
             }
 
-            fn keeping(self, passes: impl Fn(&str) -> bool) -> Self {
+            fn retaining(self, passes: impl Fn(&str) -> bool) -> Self {
                 Self {
                     $($field: self.$field.filter(|_| {
                         passes(&stringify!($field).replace('_', "-"))

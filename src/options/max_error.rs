@@ -7,10 +7,10 @@ use crate::error::{Error, Result};
 use crate::scene::Storage;
 
 group! {
-    /// What decides how rays are followed where the user does not.
+    /// The options by which the program decides how rays are followed.
     #[command(next_help_heading = "Sampling")]
     pub struct ToleranceOptions {
-        /// Follow rays in the cheapest way whose error, against the double-precision reference, is
+        /// Follow rays by the cheapest setting whose error, against the double-precision reference, is
         /// within BOUND: rmse, max (1/255), p99, psnr (dB, at least) of the colours; in iso depth
         /// (voxels) and missed (a share, 0.1%) hits; in projections value (a share of the value
         /// range). Found by a probe and verified; takes the place of --sampling, --step, --probe,
@@ -39,6 +39,8 @@ impl ToleranceOptions {
         }
     }
 
+    /// Checks that the bound goes with the other options.
+    ///
     /// # Errors
     /// Usage: a bound that the mode has no metric for, or beside options of which it takes the
     /// place.
@@ -48,7 +50,7 @@ impl ToleranceOptions {
         };
         if let Some(key) = scene.decided().first() {
             return Err(Error::usage(format!(
-                "'max-error' and '{key}' exclude each other: a bound decides by itself how rays are followed"
+                "'max-error' and '{key}' cannot be combined: a bound decides by itself how rays are followed"
             ))
             .hint(format!(
                 "leave out {}, or 'max-error'",
@@ -59,9 +61,9 @@ impl ToleranceOptions {
         }
         if scene.sampling.voxels == Some(Storage::Filtered) {
             return Err(Error::usage(
-                "'max-error' and 'voxels' = filtered exclude each other: a bound may choose exact sampling, which solves the field from the voxels themselves",
+                "'max-error' and 'voxels' = filtered cannot be combined: a bound may choose exact sampling, which solves the field from the voxels themselves",
             )
-            .hint("leave one of both out, or say --voxels image"));
+            .hint("leave one of the two out, or use --voxels image"));
         }
         bound.check(scene.mode())
     }
@@ -75,10 +77,10 @@ impl SceneOptions {
         options
     }
 
-    /// Without what an error bound takes the place of.
+    /// Removes the options that an error bound decides.
     #[must_use]
     pub fn undecided(self) -> Self {
-        self.keeping(|option| !is_decided(option))
+        self.retaining(|option| !is_decided(option))
     }
 }
 
@@ -108,7 +110,7 @@ mod tests {
         ] {
             let refused = bound.check(&parse(text)).unwrap_err();
             assert!(
-                refused.to_string().contains("exclude each other"),
+                refused.to_string().contains("cannot be combined"),
                 "{refused}"
             );
             assert!(ToleranceOptions::default().check(&parse(text)).is_ok());
@@ -143,14 +145,14 @@ mod tests {
         let mut scene = parse("step = 2");
         let over = none().over_file(bound("rmse:0.1"), &parse("step = 1"), &mut scene);
         assert_eq!((over, scene), (none(), parse("step = 2")));
-        for (of_file, flags, kept) in [
+        for (of_file, flags, remaining) in [
             ("rmse:0.1", "iso = 1", true),
             ("depth:0.1", "mode = 'iso'", true),
             ("depth:0.1", "mode = 'mip'", false),
         ] {
             let over = none().over_file(bound(of_file), &parse(flags), &mut parse(""));
-            assert_eq!(over == bound(of_file), kept, "{of_file} {flags}");
-            assert_eq!(over == none(), !kept);
+            assert_eq!(over == bound(of_file), remaining, "{of_file} {flags}");
+            assert_eq!(over == none(), !remaining);
         }
     }
 }

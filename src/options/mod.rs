@@ -89,7 +89,7 @@ impl SceneOptions {
         self.picture.mode()
     }
 
-    /// The same options, those not given taken from `base`, whatever they rule out in it.
+    /// Returns these options, those not given taken from `base`, whatever they rule out in it.
     fn or(self, base: Self) -> Self {
         Self {
             volume: self.volume.over(base.volume),
@@ -115,14 +115,14 @@ impl Keys for SceneOptions {
         .concat()
     }
 
-    fn keeping(self, passes: impl Fn(&str) -> bool) -> Self {
+    fn retaining(self, passes: impl Fn(&str) -> bool) -> Self {
         Self {
-            volume: self.volume.keeping(&passes),
-            picture: self.picture.keeping(&passes),
-            camera: self.camera.keeping(&passes),
-            clip: self.clip.keeping(&passes),
-            sampling: self.sampling.keeping(&passes),
-            tone: self.tone.keeping(&passes),
+            volume: self.volume.retaining(&passes),
+            picture: self.picture.retaining(&passes),
+            camera: self.camera.retaining(&passes),
+            clip: self.clip.retaining(&passes),
+            sampling: self.sampling.retaining(&passes),
+            tone: self.tone.retaining(&passes),
         }
     }
 }
@@ -139,7 +139,7 @@ mod tests {
             ..PictureOptions::default()
         };
         assert_eq!(options.given(), ["lmip-threshold", "shading"]);
-        let kept = options.keeping(|key| key != "lmip-threshold");
-        assert_eq!(kept.given(), ["shading"]);
+        let remaining = options.retaining(|key| key != "lmip-threshold");
+        assert_eq!(remaining.given(), ["shading"]);
     }
 }

@@ -30,7 +30,7 @@ impl SceneOptions {
         notes
     }
 
-    /// That what steps need is given, and there are none.
+    /// The note that an option for fixed steps is given although there are none.
     fn idle_steps_note(&self, scene: &Scene) -> Option<String> {
         if scene.sampling.method != SamplingMethod::Exact || !self.steps_given() {
             return None;
@@ -44,7 +44,7 @@ impl SceneOptions {
         ))
     }
 
-    /// Which values the histogram suggested.
+    /// The notes on values that the histogram suggested.
     fn suggested_notes(&self, complete: &Self, subject: &Subject) -> Vec<String> {
         let suggested = |key, given: Option<Threshold>, complete: Option<Threshold>| {
             let (None, Some(Threshold::Value(value))) = (given, complete) else {
@@ -65,7 +65,7 @@ impl SceneOptions {
         iso.into_iter().chain(threshold).collect()
     }
 
-    /// That defaults are made of a part of the values.
+    /// The note that defaults are made from a part of the values.
     fn robust_range_note(&self, subject: &Subject) -> Option<String> {
         let (robust, whole) = (subject.robust_range, subject.range);
         if robust == whole || !self.picture.takes_robust_range() {

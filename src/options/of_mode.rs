@@ -20,7 +20,7 @@ impl SceneOptions {
                 _ => true,
             })
         };
-        let mut options = all.clone().keeping(goes_with_mode);
+        let mut options = all.clone().retaining(goes_with_mode);
         // Of both, the quadrature says more of how an integral is sampled.
         let quad = options.picture.quad.map(|quad| quad.sampling());
         if quad.is_some() {

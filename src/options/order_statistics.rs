@@ -8,8 +8,8 @@ use super::threshold::{Threshold, WindowEnds};
 use crate::extent::Range;
 
 impl SceneOptions {
-    /// With each order statistic of the voxels, such as p99.5, replaced by its value, and a sentence on
-    /// each option that named one. `values` gives the physical values of percentages, which are each
+    /// Replaces each order statistic of the voxels, such as p99.5, by its value, and returns a sentence
+    /// on each option that named one. `values` gives the physical values of percentages, which are each
     /// passed once; `range` is that of the volume, by which the sentences round.
     #[must_use]
     pub fn measured(
@@ -31,7 +31,7 @@ impl SceneOptions {
 }
 
 impl PictureOptions {
-    /// With each order statistic of the voxels replaced by the value that it has among `known`.
+    /// Replaces each order statistic of the voxels by the value that it has among `known`.
     fn measured(self, known: &[(f64, f64)]) -> Self {
         let value = |threshold: Threshold| {
             let known = threshold

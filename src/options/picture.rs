@@ -24,7 +24,7 @@ text_form!(
 );
 
 group! {
-    /// What is shown.
+    /// The options of the picture that is shown.
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Picture")]
     pub struct PictureOptions {
@@ -73,7 +73,7 @@ group! {
         /// dvr: how light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or
         /// preintegrated at the fixed step, or adaptive, which takes no steps and keeps every
         /// channel within the error :BOUND of linear light, 0.001 by default [default: simpson;
-        /// adaptive where --sampling exact is given, and where nothing about steps is and they would
+        /// adaptive where --sampling exact is given, and where no option for steps is and they would
         /// cost out of proportion: spacings more than 100 times apart, or more than 16384 samples
         /// per ray]
         #[arg(long, value_name = "METHOD[:BOUND]")]

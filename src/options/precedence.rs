@@ -9,25 +9,25 @@ impl SceneOptions {
     /// when the flag is a view, or the iso value when it is another mode, goes with it.
     #[must_use]
     pub fn over(self, file: Self) -> Self {
-        let kept = self.kept_of(&file);
-        self.or(kept)
+        let remaining = self.compatible_with(&file);
+        self.or(remaining)
     }
 
     /// The options of a scene file that still apply when these are the flags.
-    fn kept_of(&self, file: &Self) -> Self {
+    fn compatible_with(&self, file: &Self) -> Self {
         let replaced = REPLACED.iter().filter(|row| (row.by)(self, file));
         let replaced: Vec<&str> = replaced.flat_map(|row| row.options).copied().collect();
-        let kept = file.clone().keeping(|option| !replaced.contains(&option));
-        let together = self.clone().or(kept.clone());
-        kept.keeping(|option| {
+        let remaining = file.clone().retaining(|option| !replaced.contains(&option));
+        let together = self.clone().or(remaining.clone());
+        remaining.retaining(|option| {
             has_needs(Group::Scene, option, |need| {
                 !self.rules_out(need, file, &together)
             })
         })
     }
 
-    /// Whether these flags take away from a file what one of its options needs: what the file never had is
-    /// refused, unless a flag has to do with it.
+    /// Whether these flags take away from a file what one of its options needs. What the file never had
+    /// is refused, unless a flag has to do with it.
     fn rules_out(&self, need: Need, file: &Self, together: &Self) -> bool {
         let is_other_mode = is_other_mode(self, file);
         let is_decided = match need {
@@ -49,7 +49,7 @@ mod tests {
         SceneOptions::parse(text, "scene").unwrap()
     }
 
-    /// Of two options that contradict each other the flag wins, whichever it is.
+    /// If two options contradict each other the flag wins, whichever it is.
     #[test]
     fn a_flag_wins_over_what_contradicts_it_in_a_file() {
         let eye = "eye = [9, -40, 3]";

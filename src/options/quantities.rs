@@ -97,7 +97,7 @@ mod tests {
             let refused = wrong.parse::<Count>().unwrap_err().to_string();
             assert_eq!(
                 refused,
-                format!("'{wrong}' is not a whole number from 1 on")
+                format!("'{wrong}' is not a whole number of at least 1")
             );
         }
         for large in ["5000000000", "99999999999999999999"] {

@@ -21,7 +21,7 @@ pub struct Resolved {
 }
 
 impl Resolved {
-    /// The same scene seen by another camera with the same lens, that looks at the same target.
+    /// Returns the scene as another camera sees it that has the same lens and target.
     #[must_use]
     pub fn seen_by(&self, camera: Camera) -> Self {
         let mut seen = self.clone();
@@ -49,7 +49,8 @@ impl SceneOptions {
         Ok(resolved)
     }
 
-    /// As [`SceneOptions::resolve`], with the quadrature's default whatever it costs.
+    /// Resolves the options as [`SceneOptions::resolve`] does, with the quadrature's default whatever it
+    /// costs.
     fn resolve_as_given(&self, subject: &Subject) -> Result<Resolved> {
         self.check_rules()?;
         let method = self.method();
@@ -119,14 +120,14 @@ impl SceneOptions {
         self.picture.quad.unwrap_or(implied)
     }
 
-    /// Whether something is given that only fixed steps have.
+    /// Whether an option is given that only fixed steps have.
     pub(super) fn steps_given(&self) -> bool {
         let given = self.given();
         given.iter().any(|option| needs(option, Need::Steps))
     }
 
     fn without_steps(self) -> Self {
-        self.keeping(|option| !needs(option, Need::Steps))
+        self.retaining(|option| !needs(option, Need::Steps))
     }
 
     /// Returns the options as the text of a scene file.
@@ -181,7 +182,7 @@ mod tests {
         }
     }
 
-    /// What a scene file has to say so that an option means something.
+    /// The text that a scene file needs so that an option means something.
     fn needed(option: &str) -> String {
         let mut text = String::new();
         let needs = rule(Group::Scene, option).map_or(&[][..], |rule| rule.needs);

@@ -19,10 +19,10 @@ pub(crate) enum Group {
     Bench,
 }
 
-/// What an option decides.
+/// The part of a picture that an option decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Decides {
-    /// Which volume, what is seen of it and from where, or something beside the scene.
+    /// The volume, the picture of it and the camera, or something beside the scene.
     What,
     /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), or changes
     /// what the reference is (filter, gradient).
@@ -33,7 +33,7 @@ pub(crate) enum Decides {
 
 use Decides::{How, HowWithinBound, What};
 
-/// What an option needs in order to mean something.
+/// Another choice that an option needs in order to mean something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Need {
     /// One of these modes; why no other.
@@ -65,7 +65,7 @@ pub(crate) enum Need {
     Animation,
     /// An experiment that aims rays.
     AimedRays,
-    /// An experiment that times frames of a camera that does not move by itself.
+    /// An experiment that times frames of a camera that it does not move itself.
     TimedFrames,
     /// An experiment that times modes in rounds, beside other programs.
     Rounds,
@@ -88,13 +88,13 @@ const LMIP: &[Mode] = &[Mode::Lmip];
 const DVR: &[Mode] = &[Mode::Dvr];
 const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
 const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
-/// Those whose rays look for a crossing or an extremum, which may lie between two samples.
+/// The modes whose rays look for a crossing or an extremum, which may lie between two samples.
 const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");
 const NORMALS: Need = Need::Modes(LIT, "a projection has no normals");
 const AVERAGED: Need = Need::Modes(DVR, "only dvr takes a node for its average");
-const SPARSE: Need = Need::Precomputed("only precomputed gradients are kept at every N-th voxel");
+const SPARSE: Need = Need::Precomputed("only precomputed gradients are stored at every N-th voxel");
 const SMOOTHED: Need = Need::Precomputed(
     "only precomputed gradients are smoothed by themselves; 'smooth' is for the volume",
 );
@@ -204,7 +204,7 @@ pub(crate) fn rule(group: Group, option: &str) -> Option<&'static Rule> {
     RULES.iter().find(is_it)
 }
 
-/// Whether an option has all that it needs.
+/// Whether all needs of an option are met.
 pub(crate) fn has_needs(group: Group, option: &str, is_met: impl Fn(Need) -> bool) -> bool {
     let needs = rule(group, option).map_or(&[][..], |rule| rule.needs);
     needs.iter().all(|need| is_met(*need))
@@ -245,21 +245,21 @@ pub(super) struct Contradiction {
     pub hint: &'static str,
 }
 
-/// What a scene's options must not say together.
+/// The options of a scene that contradict each other.
 pub(super) const CONTRADICTIONS: &[Contradiction] = &[
     Contradiction {
         is_in: |all| all.camera.fov.is_some() && all.camera.ortho.is_some(),
-        sentence: "'fov' and 'ortho' exclude each other: a picture is perspective or orthographic",
+        sentence: "'fov' and 'ortho' cannot be combined: a picture is perspective or orthographic",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.eye.is_some() && all.camera.view.is_some(),
-        sentence: "'eye' and 'view' exclude each other: both place the eye",
+        sentence: "'eye' and 'view' cannot be combined: both place the eye",
         hint: TURNED,
     },
     Contradiction {
         is_in: |all| all.camera.eye.is_some() && all.camera.carm.is_some(),
-        sentence: "'eye' and 'carm' exclude each other: both place the eye",
+        sentence: "'eye' and 'carm' cannot be combined: both place the eye",
         hint: TURNED,
     },
     Contradiction {
@@ -267,47 +267,48 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
             let from_elsewhere = all.camera.view.is_some_and(|view| view != View::Anterior);
             all.camera.carm.is_some() && from_elsewhere
         },
-        sentence: "'carm' and 'view' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'view' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.carm.is_some() && all.camera.azimuth.is_some(),
-        sentence: "'carm' and 'azimuth' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'azimuth' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| all.camera.carm.is_some() && all.camera.elevation.is_some(),
-        sentence: "'carm' and 'elevation' exclude each other: 'carm' is azimuth and elevation from the anterior view",
+        sentence: "'carm' and 'elevation' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
         hint: "",
     },
     Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
-        sentence: "'homogeneity' does not go with shading: normals differ inside a node",
+        sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
     },
     Contradiction {
         is_in: |all| averages(all) && !all.quadrature().is_stepped(),
-        sentence: "'homogeneity' does not go with quad 'adaptive', which keeps a bound of its own",
+        sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
         hint: "choose another quad, or leave homogeneity out",
     },
 ];
 
-/// Whether nodes are taken for their averages.
+/// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
     options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
 }
 
 const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
 
-/// What of a scene file gives way to flags, beside the flags' own keys and what no longer has what it needs.
+/// Options of a scene file that flags replace, beside those of the flags' own keys and those that no
+/// longer have what they need.
 pub(super) struct Replaced {
-    /// Whether these flags do so, to this file.
+    /// Whether these flags replace options of this file.
     pub by: fn(&SceneOptions, &SceneOptions) -> bool,
     /// The file's options that are dropped.
     pub options: &'static [&'static str],
 }
 
-/// Which flags win over which options of a scene file.
+/// All flags that win over other options of a scene file.
 pub(super) const REPLACED: &[Replaced] = &[
     // An integral is not sampled as a surface is: neither's sampling is the other's.
     Replaced {
@@ -441,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn what_gives_way_is_an_option() {
+    fn what_is_replaced_is_an_option() {
         let names = names_of_options();
         for replaced in REPLACED {
             for option in replaced.options {

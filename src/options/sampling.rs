@@ -12,8 +12,8 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Sampling")]
     pub struct SamplingOptions {
-        /// Where a surface or a projected value is looked for: exact, solving the field in every
-        /// cell on the way, so that nothing is missed; or fixed, at steps [default: exact; fixed
+        /// Where a surface or a projected value is searched for: exact, solving the field in every
+        /// cell along the ray, so that nothing is missed; or fixed, at steps [default: exact; fixed
         /// where --step, --refine or --probe is given; in dvr exact is --quad adaptive, fixed all
         /// others]
         #[arg(long, value_name = "fixed|exact")]
@@ -37,7 +37,7 @@ group! {
         #[arg(long, value_name = "on|off")]
         skip: Switch,
 
-        /// Fixed steps: look between two samples where the field's slopes along the ray point at a peak between
+        /// Fixed steps: search between two samples where the field's slopes along the ray point at a peak between
         /// them, for the surface in iso and the extremum in mip, minip and lmip; off: fixed steps
         /// and nothing else [default: on]
         #[arg(long, value_name = "on|off")]

@@ -23,15 +23,16 @@ pub struct SceneFile {
     place: String,
     /// Where the files that it names are looked for.
     named: Named,
-    /// What of the text it is, if not all.
+    /// The part of the text that was read, if not all.
     part: Option<Part>,
 }
 
 /// Where the files are that a scene names.
 enum Named {
-    /// Relative to this folder.
+    /// They are relative to this folder.
     In(PathBuf),
-    /// As the picture's maker named them, else beside this picture, else in the working folder.
+    /// They are where the picture's maker named them, else beside this picture, else in the working
+    /// folder.
     NearPicture(PathBuf),
 }
 
@@ -39,13 +40,15 @@ enum Named {
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
     pub array: &'static str,
-    /// From 0.
+    /// The number of the part, from 0.
     pub nth: usize,
     /// Keys that are no options of a scene.
     pub without: &'static [&'static str],
 }
 
 impl SceneFile {
+    /// Reads a scene file.
+    ///
     /// # Errors
     /// An unreadable file, one that is no text.
     pub fn read(path: &Path) -> Result<Self> {
@@ -72,8 +75,8 @@ impl SceneFile {
         }
     }
 
-    /// From a scene file's text; `place` names it in errors. The files that it names are relative
-    /// to the working folder.
+    /// Takes a scene file's text; `place` names it in errors. The files that it names are relative to
+    /// the working folder.
     pub fn of_text(text: &str, place: &str) -> Self {
         Self {
             text: text.to_owned(),
@@ -83,7 +86,7 @@ impl SceneFile {
         }
     }
 
-    /// From a part of a text; otherwise as [`Self::of_text`].
+    /// Takes a part of a text; otherwise like [`Self::of_text`].
     pub fn of_part(text: &str, place: &str, part: Part) -> Self {
         Self {
             part: Some(part),
@@ -108,7 +111,7 @@ impl SceneFile {
             .map_err(|error| located(&error, &self.text, &self.place))
     }
 
-    /// That every key is one of `known`.
+    /// Checks that every key is one of `known`.
     ///
     /// # Errors
     /// No TOML; the first key that is not, as `place:line: …`.
@@ -121,7 +124,7 @@ impl SceneFile {
         };
         let name = stray.get_ref();
         let at = format!("{}:{}", self.place, line(&self.text, stray.span().start));
-        let error = Error::usage(format!("'{name}' is no option of a scene")).at(at);
+        let error = Error::usage(format!("'{name}' is not an option of a scene")).at(at);
         let wanted = name.replace('_', "-");
         if is_known(&wanted) {
             return Err(error.hint(format!("write '{wanted}'")));
@@ -204,8 +207,8 @@ pub fn flag_names(command: &clap::Command) -> Vec<String> {
 }
 
 impl SceneOptions {
-    /// What a scene file says of the scene. Its `volume`, and its `tf` when that is a file, are
-    /// relative to it.
+    /// The options of the scene that a scene file gives. Its `volume`, and its `tf` when that is a file,
+    /// are relative to it.
     ///
     /// # Errors
     /// As [`SceneFile::group`].
@@ -226,7 +229,7 @@ impl SceneOptions {
         Ok(options)
     }
 
-    /// From the text of a scene file that says nothing but the scene; `place` names it in errors.
+    /// Parses the text of a scene file that says nothing but the scene; `place` names it in errors.
     ///
     /// # Errors
     /// Anything wrong, an unknown key too, as `place:line: …`.
@@ -234,7 +237,7 @@ impl SceneOptions {
         Self::of_whole(&SceneFile::of_text(text, place))
     }
 
-    /// From a scene file that says nothing but the scene.
+    /// Parses a scene file that says nothing but the scene.
     ///
     /// # Errors
     /// As [`Self::parse`].
@@ -247,7 +250,7 @@ impl SceneOptions {
 }
 
 impl VolumeOptions {
-    /// What a scene file says of the volume, whose file is relative to it.
+    /// The options of the volume that a scene file gives, whose file is relative to it.
     ///
     /// # Errors
     /// As [`SceneFile::group`].

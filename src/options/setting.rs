@@ -17,30 +17,30 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// From the text of a scene file; `name` is what tables call the setting.
+    /// Parses the text of a scene file; `name` is what tables call the setting.
     ///
     /// # Errors
-    /// Usage: what the text says is wrong, or a key says what is seen rather than how.
+    /// Usage: what the text says is wrong, or a key changes what is shown rather than how.
     pub fn parse(name: impl Into<String>, text: &str) -> Result<Self> {
         let name = name.into();
         let options = SceneOptions::parse(text, &format!("setting '{name}'"))?;
         Self::new(name, options)
     }
 
-    /// From options that say nothing but how rays are followed.
+    /// Makes a setting of options that say nothing but how rays are followed.
     ///
     /// # Errors
-    /// Usage: an option says what is seen rather than how.
+    /// Usage: an option changes what is shown rather than how.
     pub fn new(name: impl Into<String>, options: SceneOptions) -> Result<Self> {
         let name = name.into();
         let what = |option: &&String| !is_how(option);
         match options.given().iter().find(what) {
             None => Ok(Self { name, options }),
             Some(option) => Err(Error::usage(format!(
-                "setting '{name}': '{option}' says what is seen, not how its rays are followed"
+                "setting '{name}': '{option}' changes what is shown, not how rays are followed"
             ))
             .hint(format!(
-                "a setting may say {}",
+                "a setting may give {}",
                 deciding(|decides| decides != Decides::What)
                     .collect::<Vec<_>>()
                     .join(", ")
@@ -74,16 +74,16 @@ impl Setting {
 }
 
 impl SceneOptions {
-    /// What is seen, without how rays are followed.
+    /// The options of the picture, without those that say how rays are followed.
     #[must_use]
     pub fn what(&self) -> Self {
-        self.clone().keeping(|option| !is_how(option))
+        self.clone().retaining(|option| !is_how(option))
     }
 
     /// How rays are followed, as far as it is given.
     #[must_use]
     pub fn how(&self) -> Self {
-        self.clone().keeping(is_how)
+        self.clone().retaining(is_how)
     }
 }
 
@@ -111,7 +111,7 @@ mod tests {
         for text in ["iso = 4", "azimuth = 3", "mode = 'mip'", "window = [0, 1]"] {
             let refused = Setting::parse("x", text).unwrap_err();
             assert!(
-                refused.to_string().contains("says what is seen"),
+                refused.to_string().contains("changes what is shown"),
                 "{refused}"
             );
         }

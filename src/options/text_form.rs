@@ -81,7 +81,7 @@ impl<'de> Visitor<'de> for Text {
         Ok(number.to_string())
     }
 
-    /// What no 64 bits hold.
+    /// A whole number that does not fit into 64 bits.
     fn visit_i128<E>(self, number: i128) -> Result<String, E> {
         Ok(number.to_string())
     }

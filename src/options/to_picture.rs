@@ -11,7 +11,7 @@ use crate::scene::{
 };
 use crate::subject::Subject;
 
-/// What picture options are of a volume.
+/// The picture options, resolved for a volume.
 pub(super) struct ResolvedPicture {
     pub picture: Picture,
     pub light: Light,

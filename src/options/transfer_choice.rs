@@ -29,6 +29,8 @@ impl TransferChoice {
         }
     }
 
+    /// Reads the preset or the file.
+    ///
     /// # Errors
     /// As [`TransferFile::named`].
     pub fn read(self) -> Result<TransferFile> {

@@ -1,4 +1,4 @@
-//! Which volume, and how it is read: what the voxels are before anything looks at them.
+//! Which volume, and how it is read: what the voxels are before they are used.
 
 use std::path::PathBuf;
 

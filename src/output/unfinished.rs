@@ -1,4 +1,4 @@
-//! Files on their way to their names: hidden, beside them, and gone when their writer is.
+//! Files that are being written: hidden, beside their final names, and removed when their writer ends.
 //!
 //! A writer holds a lock on its file. What is not locked was left by a process that was killed, and is
 //! removed by the next one that writes into the folder. Locks may not reach from one machine of a
@@ -16,13 +16,13 @@ use tempfile::TempPath;
 
 const PREFIX: &str = ".unfinished-";
 
-/// What another machine left is removed when it is older.
+/// The age at which a file that another machine left is removed.
 const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 
 /// A file that takes its name when it is whole, and is removed when it is dropped before.
 pub(super) struct Unfinished(Option<TempPath>);
 
-/// Those of this process, and the folders that it has cleared of what others left.
+/// The unfinished files of this process, and the folders that it has cleared of what others left.
 #[derive(Default)]
 struct Known {
     live: BTreeSet<PathBuf>,
@@ -89,7 +89,7 @@ pub fn forget_unfinished() {
     }
 }
 
-/// Removes what processes that are no more left in a folder, as far as it can be.
+/// Removes what processes that have ended left in a folder, as far as that is possible.
 fn sweep(folder: &Path, machine: &str) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries {
@@ -117,9 +117,9 @@ fn maker(name: &str) -> Option<&str> {
 
 /// A word for this machine among those that share a file system.
 fn machine() -> String {
-    let told = fs::read_to_string("/proc/sys/kernel/hostname").ok();
-    let told = told.or_else(|| std::env::var("COMPUTERNAME").ok());
-    let hash = blake3::hash(told.unwrap_or_default().as_bytes());
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let name = name.or_else(|| std::env::var("COMPUTERNAME").ok());
+    let hash = blake3::hash(name.unwrap_or_default().as_bytes());
     hash.to_hex()[..8].to_owned()
 }
 
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// A file as a process that is no more left it, so long ago.
+    /// A file that a process left which has ended, so long ago.
     fn left(folder: &Path, name: &str, age: Duration) -> PathBuf {
         let path = folder.join(name);
         let file = File::create(&path).unwrap();
@@ -155,7 +155,7 @@ mod tests {
         let there = [&ours, &held, &elsewhere, &long_ago, &own, &named].map(|path| path.exists());
         assert_eq!(there, [false, true, true, false, true, true]);
 
-        // One that is being written is nobody's to remove; once it is dropped it is gone.
+        // A file that is being written is not removed by others; once it is dropped it no longer exists.
         let count = || fs::read_dir(folder).unwrap().count();
         sweep(folder, &here);
         assert_eq!(count(), 5);

@@ -1,4 +1,4 @@
-//! Walking every cell along a ray, in order, after Amanatides and Woo 1987; each wall's crossing is
+//! Walking every cell along a ray, in order, after Amanatides and Woo 1987; each face's crossing is
 //! computed from the start, so that no error accumulates.
 
 use crate::extent::Dims;
@@ -12,32 +12,33 @@ use super::interval::Interval;
 pub struct Lattice {
     /// Boxes along each axis.
     pub count: [usize; 3],
-    /// Where the wall between box 0 and box 1 lies.
-    first_wall: f64,
+    /// The coordinate of the face between box 0 and box 1.
+    first_face: f64,
 }
 
 impl Lattice {
+    /// Makes the boxes of a volume under a reconstruction filter.
     pub fn new(dims: Dims, filter: Filter) -> Self {
         match filter {
             Filter::Linear => Self {
                 count: dims.cells().map(|n| n as usize),
-                first_wall: 1.0,
+                first_face: 1.0,
             },
             Filter::Nearest => Self {
                 count: dims.usize(),
-                first_wall: 0.5,
+                first_face: 0.5,
             },
         }
     }
 
-    /// The wall between box `below` and the next.
-    fn wall(&self, below: usize) -> f64 {
-        below as f64 + self.first_wall
+    /// The coordinate of the face between box `below` and the next.
+    fn face(&self, below: usize) -> f64 {
+        below as f64 + self.first_face
     }
 
-    /// The box of a coordinate; on a wall, the higher one.
+    /// The box of a coordinate; on a face, the higher one.
     fn box_at(&self, axis: usize, p: f64) -> usize {
-        let index = (p - self.first_wall + 1.0).floor().max(0.0);
+        let index = (p - self.first_face + 1.0).floor().max(0.0);
         (index as usize).min(self.count[axis] - 1)
     }
 }
@@ -46,20 +47,25 @@ impl Lattice {
 /// from 0 to 1 between them.
 #[derive(Debug, Clone, Copy)]
 pub struct Segment {
+    /// Distance of its start from the interval's start, mm.
     pub from_mm: f64,
+    /// Distance of its end from the interval's start, mm.
     pub to_mm: f64,
-    /// Index-space positions of both ends; exact on the wall they lie on.
+    /// Index-space position of its start; exact on the face it lies on.
     pub p0: [f64; 3],
+    /// Index-space position of its end; exact on the face it lies on.
     pub p1: [f64; 3],
+    /// The index of the box along each axis.
     pub cell: [usize; 3],
 }
 
 impl Segment {
+    /// The length of the segment, mm.
     pub fn length_mm(&self) -> f64 {
         self.to_mm - self.from_mm
     }
 
-    /// Distance from the interval's start.
+    /// The distance from the interval's start at `s`, mm.
     pub fn at_mm(&self, s: f64) -> f64 {
         self.from_mm + self.length_mm() * s
     }
@@ -71,7 +77,7 @@ pub struct Walk {
     lattice: Lattice,
     interval: Interval,
     cell: [usize; 3],
-    /// Distance to the next wall along each axis; infinite after the last.
+    /// Distance to the next face along each axis; infinite after the last.
     next_mm: [f64; 3],
     at_mm: f64,
     p: [f64; 3],
@@ -79,6 +85,7 @@ pub struct Walk {
 }
 
 impl Walk {
+    /// Starts a walk through the boxes at the interval's start.
     pub fn new(lattice: Lattice, interval: &Interval) -> Self {
         let mut walk = Self {
             lattice,
@@ -91,14 +98,14 @@ impl Walk {
         };
         for axis in 0..3 {
             walk.cell[axis] = lattice.box_at(axis, interval.start[axis]);
-            walk.next_mm[axis] = walk.wall_ahead(axis).map_or(f64::INFINITY, |(_, mm)| mm);
+            walk.next_mm[axis] = walk.face_ahead(axis).map_or(f64::INFINITY, |(_, mm)| mm);
             walk.pass(axis, 0.0);
         }
         walk
     }
 
-    /// The wall ahead along an axis: coordinate and distance.
-    fn wall_ahead(&self, axis: usize) -> Option<(f64, f64)> {
+    /// The face ahead along an axis: coordinate and distance.
+    fn face_ahead(&self, axis: usize) -> Option<(f64, f64)> {
         let (dir, cell) = (self.interval.dir[axis], self.cell[axis]);
         let below = if dir > 0.0 {
             (cell + 1 < self.lattice.count[axis]).then_some(cell)?
@@ -107,21 +114,21 @@ impl Walk {
         } else {
             return None;
         };
-        let wall = self.lattice.wall(below);
-        Some((wall, (wall - self.interval.start[axis]) / dir))
+        let face = self.lattice.face(below);
+        Some((face, (face - self.interval.start[axis]) / dir))
     }
 
-    /// Goes through the axis's walls that lie at `mm` or before; the last one's coordinate.
+    /// Goes through the axis's faces that lie at `mm` or before; returns the last one's coordinate.
     fn pass(&mut self, axis: usize, mm: f64) -> Option<f64> {
         let mut passed = None;
         while self.next_mm[axis] <= mm {
-            passed = self.wall_ahead(axis).map(|(wall, _)| wall);
+            passed = self.face_ahead(axis).map(|(face, _)| face);
             if self.interval.dir[axis] > 0.0 {
                 self.cell[axis] += 1;
             } else {
                 self.cell[axis] -= 1;
             }
-            self.next_mm[axis] = self.wall_ahead(axis).map_or(f64::INFINITY, |(_, mm)| mm);
+            self.next_mm[axis] = self.face_ahead(axis).map_or(f64::INFINITY, |(_, mm)| mm);
         }
         passed
     }
@@ -144,9 +151,9 @@ impl Iterator for Walk {
             cell: self.cell,
         };
         for axis in 0..3 {
-            let wall = self.pass(axis, to_mm);
+            let face = self.pass(axis, to_mm);
             let free = self.interval.start[axis] + self.interval.dir[axis] * to_mm;
-            segment.p1[axis] = wall.unwrap_or(free);
+            segment.p1[axis] = face.unwrap_or(free);
         }
         self.at_mm = to_mm;
         self.p = segment.p1;
@@ -160,11 +167,11 @@ mod tests {
     use super::super::interval::IndexRay;
     use super::*;
 
-    /// What a correct walk satisfies: it tiles the interval, and each segment's middle lies in its
-    /// own box.
-    fn faults(dims: Dims, walk: Filter, judge: Filter, interval: &Interval) -> usize {
+    /// Counts faults of a walk: it must tile the interval, and each segment's middle must lie in its own
+    /// box.
+    fn faults(dims: Dims, walk: Filter, lattice_filter: Filter, interval: &Interval) -> usize {
         let segments: Vec<Segment> = Walk::new(Lattice::new(dims, walk), interval).collect();
-        let lattice = Lattice::new(dims, judge);
+        let lattice = Lattice::new(dims, lattice_filter);
         let mut faults = 0;
         let mut at_mm = 0.0;
         for s in &segments {
@@ -173,7 +180,7 @@ mod tests {
             for axis in 0..3 {
                 if dims.usize()[axis] > 1 {
                     let middle = (s.p0[axis] + s.p1[axis]) / 2.0;
-                    let low = s.cell[axis] as f64 - (1.0 - lattice.first_wall);
+                    let low = s.cell[axis] as f64 - (1.0 - lattice.first_face);
                     let inside = middle >= low - 1e-12 && middle <= low + 1.0 + 1e-12;
                     faults += usize::from(!inside || s.cell[axis] >= lattice.count[axis]);
                 }
@@ -191,7 +198,7 @@ mod tests {
                 .wrapping_add(1);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let (mut met, mut caught) = (0, 0);
+        let (mut hits, mut caught) = (0, 0);
         for case in 0..6000 {
             let dims = Dims::new([[7, 5, 9], [1, 6, 4], [2, 2, 2], [1, 1, 1]][case % 4]).unwrap();
             let filter = [Filter::Linear, Filter::Nearest][case / 4 % 2];
@@ -211,14 +218,14 @@ mod tests {
             let Some(interval) = Interval::new(&IndexRay { origin, dir }, dims) else {
                 continue;
             };
-            met += 1;
+            hits += 1;
             let found = faults(dims, filter, filter, &interval);
             assert_eq!(found, 0, "{origin:?} {dir:?}");
             // The other filter's boxes are not these.
             let other = [Filter::Nearest, Filter::Linear][case / 4 % 2];
             caught += usize::from(faults(dims, filter, other, &interval) > 0);
         }
-        assert!(met > 300 && caught > 100, "{met} met, {caught} caught");
+        assert!(hits > 300 && caught > 100, "{hits} met, {caught} caught");
     }
 
     #[test]

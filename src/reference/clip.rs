@@ -19,6 +19,7 @@ pub struct IndexPlane {
 }
 
 impl IndexPlane {
+    /// Transforms a plane from world space (mm) to index space.
     pub fn new(plane: ClipPlane, world_from_index: DAffine3) -> Self {
         let (normal, offset) = plane.in_space(world_from_index);
         Self {

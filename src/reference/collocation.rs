@@ -3,12 +3,15 @@
 
 use std::sync::LazyLock;
 
+/// The number of nodes of the rule.
 pub const NODES: usize = 5;
 
 /// Nodes on [0, 1], quadrature weights, and the integrals of the interpolation polynomials from 0
 /// to each node.
 pub struct Collocation {
+    /// The nodes, in [0, 1].
     pub nodes: [f64; NODES],
+    /// The weight of each node in the integral from 0 to 1.
     pub weights: [f64; NODES],
     /// `to_node[i][j]`: weight of node j in the integral from 0 to node i.
     pub to_node: [[f64; NODES]; NODES],

@@ -2,17 +2,17 @@
 
 use smallvec::{SmallVec, smallvec};
 
-/// By its Bézier ordinates, s from 0 to 1 along a segment: every value is a mean of them with weights
-/// from 0 to 1. So it never leaves their range, and an ordinate whose weight is small disturbs it little,
-/// however large it is.
+/// A cubic given by its Bézier ordinates, s from 0 to 1 along a segment: every value is a mean of them
+/// with weights from 0 to 1. So it never leaves their range, and an ordinate whose weight is small
+/// disturbs it little, however large it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic(pub [f64; 4]);
 
 /// Parameters in ascending order, from 0 to 1.
 pub type Parameters = SmallVec<[f64; 8]>;
 
-/// From `a` to `b`, never outside their range: from the nearer end, so that the rounding of b − a cannot
-/// carry it past the other.
+/// Interpolates from `a` to `b`, never outside their range: from the nearer end, so that the rounding of
+/// b − a cannot carry it past the other.
 fn lerp(a: f64, b: f64, t: f64) -> f64 {
     if t < 0.5 {
         a + (b - a) * t
@@ -41,13 +41,13 @@ impl Cubic {
         ])
     }
 
-    /// `Σ weights[i] · cubics[i]`.
+    /// The linear combination `Σ weights[i] · cubics[i]`.
     pub fn combine(cubics: &[Self; 3], weights: [f64; 3]) -> Self {
         let coefficient = |k: usize| (0..3).fold(0.0, |sum, i| sum + weights[i] * cubics[i].0[k]);
         Self([0, 1, 2, 3].map(coefficient))
     }
 
-    /// By de Casteljau's algorithm.
+    /// Evaluates the cubic by de Casteljau's algorithm.
     pub fn at(&self, s: f64) -> f64 {
         let [a, b, c, d] = self.0;
         let [a, b, c] = [lerp(a, b, s), lerp(b, c, s), lerp(c, d, s)];
@@ -87,7 +87,7 @@ impl Cubic {
     pub fn monotone_ends(&self) -> Parameters {
         let mut ends: Parameters = smallvec![0.0];
         let differences = self.differences();
-        let scale = differences.iter().fold(0.0, |most, d| d.abs().max(most));
+        let scale = differences.iter().fold(0.0, |max, d| d.abs().max(max));
         if scale > 0.0 {
             // The derivative k2·s² + k1·s + k0, by the form without cancellation.
             let [a, b, c] = differences.map(|d| d / scale);
@@ -153,7 +153,7 @@ impl Cubic {
     }
 }
 
-/// Within their range, too.
+/// The mean of three values, never outside their range.
 fn mean_of_three(values: [f64; 3]) -> f64 {
     let [a, b, c] = values;
     let mean = (a + b + c) / 3.0;

@@ -36,40 +36,43 @@ const STEADY: f64 = 0.8;
 /// Light behind this transmittance is not followed.
 const DARK: f64 = 1e-12;
 
-/// What a ray sees of an emitting, absorbing medium.
+/// The light that a ray receives from an emitting, absorbing medium.
 #[derive(Debug, Clone, Copy)]
 pub struct Emitted {
-    /// Premultiplied linear light.
+    /// The colour: premultiplied linear light.
     pub color: [f64; 3],
     /// exp(−∫κ) over the whole interval, or below [`DARK`].
     pub transmittance: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub walked: u32,
 }
 
 /// Means along a ray, each point weighted as its light is that reaches the eye: ∫ x κT dt / ∫ κT dt.
 #[derive(Debug, Clone, Copy)]
 pub struct Means {
-    /// Of the distance from the interval's start.
+    /// The mean distance from the interval's start, mm.
     pub at_mm: f64,
-    /// Of Φ; physical.
+    /// The mean of Φ, physical.
     pub value: f64,
-    /// Of the unit normals, world space, itself not of unit length; 0 where none were asked for.
+    /// The mean of the unit normals, world space, itself not of unit length; 0 if none were requested.
     pub normal_world: DVec3,
 }
 
 /// How the medium's points are lit.
 #[derive(Debug, Clone, Copy)]
 pub struct Shading {
+    /// The light and the reflection.
     pub lighting: Lighting,
+    /// How gradients are computed.
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
     pub gradient_world_from_index: DMat3,
 }
 
-/// Which way normals are found and turned to the world.
+/// How normals are computed and turned to world space.
 #[derive(Debug, Clone, Copy)]
 pub struct Normals {
+    /// How gradients are computed.
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
     pub gradient_world_from_index: DMat3,
@@ -96,7 +99,7 @@ pub fn integrate<T: Voxel>(
     }
 }
 
-/// The means of an interval in which something absorbs, the normal where asked for. Their integrals are as
+/// The means of an interval in which something absorbs, the normal if requested. Their integrals are as
 /// exact as [`integrate`]'s, in shares of the interval's length and of `range`, the field's values.
 pub fn means<T: Voxel>(
     field: &Field<T>,
@@ -121,15 +124,15 @@ pub fn means<T: Voxel>(
     }
 }
 
-/// What is summed over a segment's points: N numbers each, weighted by κT.
+/// A quantity that is summed over a segment's points: N numbers each, weighted by κT.
 trait Points<const N: usize> {
-    /// At s of the segment, where Φ is `value` and the medium has a colour.
+    /// The numbers at s of the segment, where Φ is `value` and the medium has a colour.
     fn at(&self, s: f64, value: f64, color: [f64; 3]) -> [f64; N];
 
     /// Where these numbers are not smooth.
     fn push_breaks(&self, _breaks: &mut Breaks) {}
 
-    /// Whether they surely change little on a piece: a swing might lie between all nodes.
+    /// Whether the numbers surely change little on a piece: a swing might lie between all nodes.
     fn is_steady(&self, _from: f64, _to: f64) -> bool {
         true
     }
@@ -260,7 +263,7 @@ impl Points<5> for Place {
 }
 
 /// The integrand on one segment.
-struct Stretch<P> {
+struct Integrand<P> {
     phi: Cubic,
     /// Rounding error of Φ.
     noise: f64,
@@ -268,8 +271,8 @@ struct Stretch<P> {
     points: P,
 }
 
-impl<P> Stretch<P> {
-    /// What is summed, and absorption per mm, at a point.
+impl<P> Integrand<P> {
+    /// The summed quantity, and the absorption per mm, at a point.
     fn emits<const N: usize>(&self, medium: &Medium, ramp: &Ramp, s: f64) -> ([f64; N], f64)
     where
         P: Points<N>,
@@ -314,7 +317,7 @@ impl<const N: usize> Panel<N> {
     }
 }
 
-/// What is gathered so far.
+/// The sums along a ray so far.
 struct Ray<'a, const N: usize> {
     medium: &'a Medium,
     tolerance_per_mm: f64,
@@ -324,7 +327,7 @@ struct Ray<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Ray<'a, N> {
-    /// At the start of an interval. `brightest`: the most that a point's numbers are.
+    /// Starts the sums of an interval. `brightest`: the most that a point's numbers are.
     fn new(medium: &'a Medium, interval: &Interval, brightest: f64) -> Self {
         Self {
             medium,
@@ -350,17 +353,17 @@ impl<'a, const N: usize> Ray<'a, N> {
             if self.medium.is_clear(low, high) || segment.length_mm() <= 0.0 {
                 continue;
             }
-            let stretch = Stretch {
+            let integrand = Integrand {
                 phi: Field::<T>::along(&corners, &segment),
                 noise: NOISE_SHARE * low.abs().max(high.abs()),
                 length_mm: segment.length_mm(),
                 points: points(&segment),
             };
-            for ends in stretch.breaks(self.medium).windows(2) {
+            for ends in integrand.breaks(self.medium).windows(2) {
                 let (from, to) = (ends[0], ends[1]);
-                let ramp = self.medium.ramp(stretch.phi.at(0.5 * (from + to)));
+                let ramp = self.medium.ramp(integrand.phi.at(0.5 * (from + to)));
                 if from < to && !ramp.is_clear() {
-                    self.add(&stretch, ramp, from, to);
+                    self.add(&integrand, ramp, from, to);
                 }
             }
             if self.transmittance < DARK {
@@ -370,26 +373,26 @@ impl<'a, const N: usize> Ray<'a, N> {
         walked
     }
 
-    fn add<P: Points<N>>(&mut self, stretch: &Stretch<P>, ramp: &Ramp, from: f64, to: f64) {
-        let whole = self.panel(stretch, ramp, from, to);
-        self.refine(stretch, ramp, (from, to), whole);
+    fn add<P: Points<N>>(&mut self, integrand: &Integrand<P>, ramp: &Ramp, from: f64, to: f64) {
+        let whole = self.panel(integrand, ramp, from, to);
+        self.refine(integrand, ramp, (from, to), whole);
     }
 
     /// One step of the collocation rule.
     fn panel<P: Points<N>>(
         &self,
-        stretch: &Stretch<P>,
+        integrand: &Integrand<P>,
         ramp: &Ramp,
         from: f64,
         to: f64,
     ) -> Panel<N> {
         let rule = &*GAUSS;
-        let length_mm = stretch.length_mm * (to - from);
+        let length_mm = integrand.length_mm * (to - from);
         let mut light = [[0.0; N]; NODES];
         let mut depth = [0.0; NODES];
         for i in 0..NODES {
             let s = from + (to - from) * rule.nodes[i];
-            let (emitted, absorption) = stretch.emits(self.medium, ramp, s);
+            let (emitted, absorption) = integrand.emits(self.medium, ramp, s);
             light[i] = emitted;
             depth[i] = absorption * length_mm;
         }
@@ -411,7 +414,7 @@ impl<'a, const N: usize> Ray<'a, N> {
     /// a piece too short to halve, as one of constant colour.
     fn refine<P: Points<N>>(
         &mut self,
-        stretch: &Stretch<P>,
+        integrand: &Integrand<P>,
         ramp: &Ramp,
         (from, to): (f64, f64),
         whole: Panel<N>,
@@ -420,28 +423,28 @@ impl<'a, const N: usize> Ray<'a, N> {
             return;
         }
         let middle = 0.5 * (from + to);
-        let first = self.panel(stretch, ramp, from, middle);
-        let second = self.panel(stretch, ramp, middle, to);
+        let first = self.panel(integrand, ramp, from, middle);
+        let second = self.panel(integrand, ramp, middle, to);
         let halves = first.then(second);
         let off = (0..N).fold(0.0_f64, |off, c| {
             off.max((whole.light[c] - halves.light[c]).abs())
         });
         let leaves = |panel: Panel<N>| (-panel.depth).exp();
         let estimate = off + self.brightest * (leaves(whole) - leaves(halves)).abs();
-        let length_mm = stretch.length_mm * (to - from);
+        let length_mm = integrand.length_mm * (to - from);
         let allowed = (self.tolerance_per_mm * length_mm).max(FLOOR);
-        let noise = self.medium.noise_per_mm(ramp, stretch.noise) * length_mm;
+        let noise = self.medium.noise_per_mm(ramp, integrand.noise) * length_mm;
         let left = leaves(halves);
         let agree = self.transmittance * estimate <= allowed || estimate <= noise;
-        let is_steady = || stretch.points.is_steady(from, to);
+        let is_steady = || integrand.points.is_steady(from, to);
         let is_faint = self.transmittance * self.brightest * (1.0 - left) <= FLOOR;
         if agree && halves.depth <= MAX_DEPTH_OF_PIECE && (is_faint || is_steady()) {
             self.gather(halves.light, left);
         } else if to - from > SHORTEST {
-            self.refine(stretch, ramp, (from, middle), first);
-            self.refine(stretch, ramp, (middle, to), second);
+            self.refine(integrand, ramp, (from, middle), first);
+            self.refine(integrand, ramp, (middle, to), second);
         } else {
-            let (light, _) = stretch.emits(self.medium, ramp, middle);
+            let (light, _) = integrand.emits(self.medium, ramp, middle);
             self.gather(light.map(|c| c * (1.0 - left)), left);
         }
     }

@@ -14,6 +14,7 @@ pub struct Field<'a, T> {
     dims: [usize; 3],
     slope: f64,
     filter: Filter,
+    /// The boxes in which the field is one polynomial.
     pub lattice: Lattice,
 }
 

@@ -1,5 +1,5 @@
 //! The gradient of Φ inside one box of the lattice, as polynomials along a ray: a shift by whole
-//! voxels keeps the walls of the boxes where they are.
+//! voxels keeps the faces of the boxes where they are.
 
 use crate::scene::Gradient;
 use crate::volume::Voxel;

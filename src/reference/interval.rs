@@ -5,22 +5,25 @@ use crate::extent::Dims;
 /// A ray in index space: `p_index = origin + dir · t`, t in mm from the eye.
 #[derive(Debug, Clone, Copy)]
 pub struct IndexRay {
+    /// The eye, in voxels.
     pub origin: [f64; 3],
-    /// Voxels per mm.
+    /// The direction, in voxels per mm.
     pub dir: [f64; 3],
 }
 
 /// A face of the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
+    /// The axis to which the face is orthogonal: 0, 1 or 2.
     pub axis: usize,
     /// Whether it is the face at the axis's low end.
     pub low: bool,
 }
 
-/// What a ray enters its interval through.
+/// The face or plane through which a ray enters its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry {
+    /// One of the volume's own faces.
     Face(Face),
     /// The number of the scene's clip plane.
     Plane(usize),
@@ -29,12 +32,13 @@ pub enum Entry {
 /// The ray's interval, measured from where it starts: a far eye costs no digits inside.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval {
-    /// From the eye to the interval's start.
+    /// Distance from the eye to the interval's start, mm.
     pub enter_mm: f64,
+    /// The length of the interval, mm.
     pub length_mm: f64,
     /// Index-space position of the start, within the domain.
     pub start: [f64; 3],
-    /// Voxels per mm.
+    /// The direction, in voxels per mm.
     pub dir: [f64; 3],
     /// `None` when the ray starts inside (or on the surface).
     pub entry: Option<Entry>,

@@ -7,14 +7,14 @@ use crate::scene::{Knot, TransferFunction};
 #[derive(Debug, Clone, Copy)]
 pub struct Ramp {
     from: f64,
-    /// 0: constant.
+    /// The width of the ramp in values; 0 if it is constant.
     width: f64,
     below: Knot,
     above: Knot,
 }
 
 impl Ramp {
-    /// Whether it absorbs nothing.
+    /// Whether the ramp absorbs nothing.
     pub fn is_clear(&self) -> bool {
         self.below.opacity == 0.0 && self.above.opacity == 0.0
     }
@@ -47,6 +47,7 @@ pub struct Medium {
 }
 
 impl Medium {
+    /// Prepares a transfer function: its ramps, and the values where its absorption is not smooth.
     pub fn new(transfer: &TransferFunction) -> Self {
         let knots = transfer.knots();
         let constant = |knot: Knot| Ramp {
@@ -110,7 +111,7 @@ impl Medium {
         &self.levels[first..end.max(first)]
     }
 
-    /// What an error `noise` of Φ may do to the absorption of a range.
+    /// The largest change of the absorption of a range by an error `noise` of Φ, per mm.
     pub fn noise_per_mm(&self, ramp: &Ramp, noise: f64) -> f64 {
         if ramp.width == 0.0 {
             return 0.0;

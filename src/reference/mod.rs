@@ -22,7 +22,7 @@ mod tone;
 mod tracer;
 
 pub use tone::display;
-pub use tracer::{Sight, Tracer};
+pub use tracer::{RayResult, Tracer};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -57,12 +57,12 @@ pub fn render(
     progress.begin("reference", u64::from(size.height()));
     for first in (0..size.height()).step_by(BAND_ROWS as usize) {
         let rows = BAND_ROWS.min(size.height() - first);
-        let band: Vec<Sight> = (first * width..(first + rows) * width)
+        let band: Vec<RayResult> = (first * width..(first + rows) * width)
             .into_par_iter()
-            .map(|pixel| sight(&tracer, scene, pixel))
+            .map(|pixel| cast_pixel(&tracer, scene, pixel))
             .collect();
-        for (sight, pixel) in band.iter().zip((first * width) as usize..) {
-            fill(&mut frame, pixel, sight, scene);
+        for (result, pixel) in band.iter().zip((first * width) as usize..) {
+            fill(&mut frame, pixel, result, scene);
         }
         progress.advance(u64::from(rows));
     }
@@ -70,8 +70,8 @@ pub fn render(
     Ok(frame)
 }
 
-/// Some pixels of the picture of `scene`, by their numbers row by row: a picture of one row, whose
-/// pixels are they, in this order. Reports one unit of progress a pixel.
+/// Renders some pixels of the picture of `scene`, given by their numbers row by row: a picture of one
+/// row, whose pixels are they, in this order. Reports one unit of progress a pixel.
 ///
 /// # Errors
 /// As [`Tracer::new`]; no pixel, or more than a row has.
@@ -82,18 +82,18 @@ pub fn render_pixels(
     pixels: &[u32],
     progress: &dyn Progress,
 ) -> Result<Frame> {
-    /// Between two reports.
+    /// The number of pixels between two reports of progress.
     const AT_A_TIME: usize = 256;
     let tracer = Tracer::new(volume, scene)?.wanting(wanted);
     let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;
     progress.begin("reference", pixels.len() as u64);
     for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {
-        let sights: Vec<Sight> = some
+        let results: Vec<RayResult> = some
             .par_iter()
-            .map(|&pixel| sight(&tracer, scene, pixel))
+            .map(|&pixel| cast_pixel(&tracer, scene, pixel))
             .collect();
-        for (sight, pixel) in sights.iter().zip(first..) {
-            fill(&mut frame, pixel, sight, scene);
+        for (result, pixel) in results.iter().zip(first..) {
+            fill(&mut frame, pixel, result, scene);
         }
         progress.advance(some.len() as u64);
     }
@@ -101,8 +101,8 @@ pub fn render_pixels(
     Ok(frame)
 }
 
-/// What the ray of a pixel's centre sees, the pixels counted row by row.
-fn sight(tracer: &Tracer, scene: &Scene, pixel: u32) -> Sight {
+/// Casts the ray of a pixel's centre, the pixels counted row by row.
+fn cast_pixel(tracer: &Tracer, scene: &Scene, pixel: u32) -> RayResult {
     let width = scene.size.width();
     let (x, y) = (pixel % width, pixel / width);
     let (x_px, y_px) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
@@ -111,8 +111,8 @@ fn sight(tracer: &Tracer, scene: &Scene, pixel: u32) -> Sight {
 
 /// Double precision decides every ray but those whose own cubics touch the iso value to the last bit;
 /// its answer is the one that others are compared with.
-fn certificate(sight: &Sight, scene: &Scene) -> Certificate {
-    match (&scene.picture, sight.kind) {
+fn certificate(result: &RayResult, scene: &Scene) -> Certificate {
+    match (&scene.picture, result.kind) {
         (Picture::Surface { .. }, Kind::Nothing) => Certificate::Miss,
         (Picture::Surface { .. }, _) => Certificate::Hit,
         _ => Certificate::Undecided,
@@ -120,22 +120,27 @@ fn certificate(sight: &Sight, scene: &Scene) -> Certificate {
 }
 
 /// Fills one pixel of every plane that is there.
-fn fill(frame: &mut Frame, pixel: usize, sight: &Sight, scene: &Scene) {
+fn fill(frame: &mut Frame, pixel: usize, result: &RayResult, scene: &Scene) {
     fn set<T: PlaneEntry>(layers: &mut Layers, key: Key<T>, pixel: usize, entry: T) {
         if let Some(plane) = layers.plane_mut(key) {
             plane[pixel] = entry;
         }
     }
     let narrowed = |v: DVec3| v.to_array().map(|c| c as f32);
-    frame.color[pixel] = sight.color.map(|c| c as f32);
+    frame.color[pixel] = result.color.map(|c| c as f32);
     if let Some(plane) = &mut frame.display {
-        plane[pixel] = display(sight.color, &scene.tone).map(|c| c as f32);
+        plane[pixel] = display(result.color, &scene.tone).map(|c| c as f32);
     }
     let layers = &mut frame.layers;
-    set(layers, DEPTH, pixel, sight.depth_mm as f32);
-    set(layers, NORMAL, pixel, narrowed(sight.normal_world));
-    set(layers, VALUE, pixel, sight.value as f32);
-    set(layers, STEPS, pixel, sight.cells);
-    set(layers, KIND, pixel, sight.kind as u32);
-    set(layers, CERTIFICATE, pixel, certificate(sight, scene) as u32);
+    set(layers, DEPTH, pixel, result.depth_mm as f32);
+    set(layers, NORMAL, pixel, narrowed(result.normal_world));
+    set(layers, VALUE, pixel, result.value as f32);
+    set(layers, STEPS, pixel, result.cells);
+    set(layers, KIND, pixel, result.kind as u32);
+    set(
+        layers,
+        CERTIFICATE,
+        pixel,
+        certificate(result, scene) as u32,
+    );
 }

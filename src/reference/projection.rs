@@ -10,10 +10,11 @@ use super::interval::Interval;
 /// A projected value.
 #[derive(Debug, Clone, Copy)]
 pub struct Projected {
+    /// The projected value, without the calibration's intercept.
     pub value: f64,
     /// Where it is first reached, from the interval's start; +∞ for the mean.
     pub at_mm: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub walked: u32,
 }
 

@@ -8,12 +8,14 @@ use crate::scene::{Light, Phong, Reflection};
 #[derive(Debug, Clone, Copy)]
 pub struct Lighting {
     phong: Phong,
-    /// Unit vectors, world space.
+    /// The unit vector toward the viewer, world space.
     pub to_viewer: DVec3,
+    /// The unit vector toward the light, world space.
     pub to_light: DVec3,
 }
 
 impl Lighting {
+    /// Prepares the lighting of a ray of the unit direction `dir_world`.
     pub fn new(phong: Phong, light: Light, dir_world: DVec3) -> Self {
         let to_viewer = -dir_world;
         Self {
@@ -26,9 +28,9 @@ impl Lighting {
         }
     }
 
-    /// Linear light reflected by a point of base colour `color`:
-    /// `color·(ambient + diffuse·max(n·l, 0)) + specular·s`, after n is turned to the viewer.
-    /// A point that faces away from the light has no specular term.
+    /// The linear light reflected by a point of base colour `color`: `color·(ambient + diffuse·max(n·l,
+    /// 0)) + specular·s`, after n is turned to the viewer. A point that faces away from the light has no
+    /// specular term.
     pub fn reflect(&self, color: [f64; 3], normal: DVec3) -> [f64; 3] {
         let p = &self.phong;
         let n = if normal.dot(self.to_viewer) < 0.0 {

@@ -11,17 +11,18 @@ use super::interval::{Entry, Interval};
 /// A point of the isosurface, or of a cap.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
-    /// From the interval's start.
+    /// Distance from the interval's start, mm.
     pub at_mm: f64,
-    /// Φ there; with the nearest filter, of the box behind the wall.
+    /// Φ there; with the nearest filter, of the box behind the face.
     pub value: f64,
     /// ∇Φ in index space; 0 on a cap.
     pub gradient: [f64; 3],
-    /// What a cap closes: it has the normal of that.
+    /// The face or plane that a cap closes, whose normal it has.
     pub cap: Option<Entry>,
 }
 
 impl Crossing {
+    /// The kind of the hit: a surface or a cap.
     pub fn kind(&self) -> Kind {
         if self.cap.is_some() {
             Kind::Cap
@@ -75,7 +76,7 @@ pub fn first_crossing<T: Voxel>(
             };
             return (Some(cap), walked);
         }
-        // A wall of the nearest filter; or a level within the last bit of Φ at a cell face.
+        // A face of the nearest filter; or a level within the last bit of Φ at a cell face.
         if start_in != inside {
             return (Some(crossing(0.0)), walked);
         }

@@ -19,27 +19,29 @@ use super::shade::{Lighting, normal_from_gradient};
 use super::surface::{Crossing, first_crossing};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
-/// rising and falling are told apart.
+/// rising and falling are distinguished.
 const NOISE_SHARE: f64 = 1e-13;
 
-/// What a ray sees; all 0 and the depth +∞ where it sees nothing.
+/// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
-    /// Linear light, premultiplied, without background.
+pub struct RayResult {
+    /// The colour: linear light, premultiplied, without background.
     pub color: [f64; 4],
-    /// mm from the ray's origin; +∞: none. Of a medium the mean, where it was asked for.
+    /// Distance from the ray's origin, mm; +∞ if it meets nothing. For a medium the mean, if it was
+    /// requested.
     pub depth_mm: f64,
-    /// Unit, world space, toward lower values; 0 where there is none. Of a medium the mean's direction, where
-    /// it was asked for.
+    /// The unit normal, world space, toward lower values; 0 if there is none. For a medium the mean's
+    /// direction, if it was requested.
     pub normal_world: DVec3,
-    /// Φ at the hit, the projected value, or of a medium the mean, where it was asked for; physical.
+    /// Φ at the hit, the projected value, or for a medium the mean, if it was requested; physical.
     pub value: f64,
-    /// Boxes walked.
+    /// The number of boxes walked.
     pub cells: u32,
+    /// The kind of thing that the ray meets.
     pub kind: Kind,
 }
 
-impl Sight {
+impl RayResult {
     const NOTHING: Self = Self {
         color: [0.0; 4],
         depth_mm: f64::INFINITY,
@@ -65,6 +67,8 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
+    /// Prepares a volume and a scene for casting rays.
+    ///
     /// # Errors
     /// The volume's spacing is too small for double precision.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
@@ -98,14 +102,14 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// With the means of a medium that these planes need, which are integrals of their own.
+    /// Adds the means of a medium that these planes need, which are integrals of their own.
     #[must_use]
     pub fn wanting(self, wanted: Wanted) -> Self {
         Self { wanted, ..self }
     }
 
-    /// What one ray sees. Its direction is a unit vector in world space.
-    pub fn cast(&self, ray: Ray) -> Sight {
+    /// Casts one ray. Its direction is a unit vector in world space.
+    pub fn cast(&self, ray: Ray) -> RayResult {
         // Relative to the volume's origin, so that a far one costs no digits.
         let origin_index = self.index_from_world * (ray.origin_world - self.origin_world);
         let index_ray = IndexRay {
@@ -114,9 +118,9 @@ impl<'a> Tracer<'a> {
         };
         let dims = self.volume.dims();
         let inside = Interval::new(&index_ray, dims);
-        let kept = inside.and_then(|inside| inside.clipped(&self.clip_planes, dims));
-        let Some(interval) = kept else {
-            return Sight::NOTHING;
+        let visible = inside.and_then(|inside| inside.clipped(&self.clip_planes, dims));
+        let Some(interval) = visible else {
+            return RayResult::NOTHING;
         };
         with_voxels!(self.volume.voxels(), voxels => {
             let field = Field::new(
@@ -129,23 +133,23 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
+    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> RayResult {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
                 let iso = self.volume.rescale().without_intercept(*iso);
                 let (crossing, cells) =
                     first_crossing(field, interval, iso, *caps, self.scene.gradient);
-                let seen = crossing.map_or(Sight::NOTHING, |crossing| {
+                let seen = crossing.map_or(RayResult::NOTHING, |crossing| {
                     self.surface(&crossing, interval, dir_world)
                 });
-                Sight { cells, ..seen }
+                RayResult { cells, ..seen }
             }
             Picture::Projection { of, window } => self.projection(field, interval, *of, *window),
             Picture::Emission(_) => self.emission(field, interval, dir_world),
         }
     }
 
-    fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> Sight {
+    fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> RayResult {
         let normal_world = match crossing.cap {
             Some(entry) => self.outward_normal(entry),
             None => {
@@ -154,7 +158,7 @@ impl<'a> Tracer<'a> {
             }
         };
         let Picture::Surface { color, phong, .. } = &self.scene.picture else {
-            return Sight::NOTHING;
+            return RayResult::NOTHING;
         };
         let [r, g, b] = match phong {
             Some(phong) => {
@@ -162,7 +166,7 @@ impl<'a> Tracer<'a> {
             }
             None => color.0,
         };
-        Sight {
+        RayResult {
             color: [r, g, b, 1.0],
             depth_mm: interval.enter_mm + crossing.at_mm,
             normal_world,
@@ -178,7 +182,7 @@ impl<'a> Tracer<'a> {
         interval: &Interval,
         of: Projection,
         window: Window,
-    ) -> Sight {
+    ) -> RayResult {
         let rescale = self.volume.rescale();
         let of = match of {
             Projection::LocalMaximum { threshold } => Projection::LocalMaximum {
@@ -189,7 +193,7 @@ impl<'a> Tracer<'a> {
         let projected = project(field, interval, of, self.noise);
         let value = projected.value + rescale.intercept;
         let grey = linear_from_srgb(window.grey_srgb(value));
-        Sight {
+        RayResult {
             color: [grey, grey, grey, 1.0],
             depth_mm: interval.enter_mm + projected.at_mm,
             normal_world: DVec3::ZERO,
@@ -199,9 +203,14 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    fn emission<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> Sight {
+    fn emission<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        interval: &Interval,
+        dir_world: DVec3,
+    ) -> RayResult {
         let (Some(medium), Picture::Emission(picture)) = (&self.medium, &self.scene.picture) else {
-            return Sight::NOTHING;
+            return RayResult::NOTHING;
         };
         let shading = picture.phong.map(|phong| Shading {
             lighting: Lighting::new(phong, self.scene.light, dir_world),
@@ -211,30 +220,30 @@ impl<'a> Tracer<'a> {
         let emitted = emission::integrate(field, interval, medium, shading.as_ref());
         let [r, g, b] = emitted.color;
         let opacity = 1.0 - emitted.transmittance;
-        let sight = Sight {
+        let result = RayResult {
             color: [r, g, b, opacity],
             cells: emitted.walked,
-            ..Sight::NOTHING
+            ..RayResult::NOTHING
         };
         if (opacity as f32) < Emission::LAYERS_FROM {
-            return sight;
+            return result;
         }
-        self.with_means(sight, field, interval, medium, dir_world)
+        self.with_means(result, field, interval, medium, dir_world)
     }
 
-    /// What a ray sees of a medium, with the means that are wanted.
+    /// The result for a medium, with the means that are wanted.
     fn with_means<T: Voxel>(
         &self,
-        seen: Sight,
+        seen: RayResult,
         field: &Field<T>,
         interval: &Interval,
         medium: &Medium,
         dir_world: DVec3,
-    ) -> Sight {
+    ) -> RayResult {
         let kind = Kind::Surface;
         let means = [Layer::Depth, Layer::Normal, Layer::Value];
         if !self.wanted.has_any(means) {
-            return Sight { kind, ..seen };
+            return RayResult { kind, ..seen };
         }
         let normals = self.wanted.has(Layer::Normal).then(|| Normals {
             gradient: self.scene.gradient,
@@ -248,7 +257,7 @@ impl<'a> Tracer<'a> {
             max: slope * max,
         };
         let means = emission::means(field, interval, medium, range, normals.as_ref());
-        Sight {
+        RayResult {
             depth_mm: interval.enter_mm + means.at_mm,
             normal_world: means.normal_world.try_normalize().unwrap_or(-dir_world),
             value: means.value + intercept,

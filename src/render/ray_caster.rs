@@ -17,9 +17,9 @@ use super::resources::{DeviceClip, DeviceLayers, HeldVolume, IndexRay, RaySource
 pub struct FirstCrossing {
     /// The ray parameter: lengths of the ray's direction from its origin; +∞: nothing.
     pub t: f32,
-    /// What the ray meets.
+    /// The kind of thing that the ray meets.
     pub kind: Kind,
-    /// What is proven of it.
+    /// What is proven of the result in spite of rounding.
     pub certificate: Certificate,
 }
 

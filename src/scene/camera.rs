@@ -11,16 +11,24 @@ use crate::subject::Subject;
 /// How rays leave the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
-    /// Vertical field of view in degrees, in (0, 180).
-    Perspective { fov_deg: f64 },
-    /// Height of the image in mm; rays start on the eye plane.
-    Orthographic { height_mm: f64 },
+    /// Rays leave one point.
+    Perspective {
+        /// The vertical field of view in degrees, in (0, 180).
+        fov_deg: f64,
+    },
+    /// Rays are parallel, and start on the eye plane.
+    Orthographic {
+        /// The height of the image in mm.
+        height_mm: f64,
+    },
 }
 
 /// A point and a unit direction in world space; `t` along it is mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
+    /// The point where the ray starts, mm.
     pub origin_world: DVec3,
+    /// The unit direction.
     pub dir_world: DVec3,
 }
 
@@ -120,6 +128,7 @@ impl Camera {
         }
     }
 
+    /// The point from which the camera sees, world space, mm.
     pub fn eye_world(&self) -> DVec3 {
         self.eye_world
     }
@@ -134,18 +143,22 @@ impl Camera {
         self.up_given
     }
 
+    /// The unit direction to the picture's right, world space.
     pub fn right(&self) -> DVec3 {
         self.right
     }
 
+    /// The unit direction to the picture's top, world space, orthogonal to [`Self::forward`].
     pub fn up(&self) -> DVec3 {
         self.up
     }
 
+    /// The unit direction in which the camera looks, world space.
     pub fn forward(&self) -> DVec3 {
         self.forward
     }
 
+    /// How rays leave the eye.
     pub fn lens(&self) -> Lens {
         self.lens
     }

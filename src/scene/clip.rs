@@ -20,6 +20,8 @@ impl ClipPlane {
     /// The maximum number of planes of a scene.
     pub const MAX_COUNT: usize = 64;
 
+    /// Makes a half-space of a normal of any length and an offset, mm times the normal's length.
+    ///
     /// # Errors
     /// A normal without direction; a number that is not finite.
     pub fn new(normal_world: DVec3, offset: f64) -> Result<Self> {
@@ -64,7 +66,7 @@ impl ClipPlane {
         (normal / largest, height / largest)
     }
 
-    /// With n's largest component ±1: no square of it vanishes or overflows.
+    /// The plane scaled so that n's largest component is ±1: no square of it vanishes or overflows.
     fn scaled(self) -> (DVec3, f64) {
         let largest = self.normal_world.abs().max_element();
         (self.normal_world / largest, self.offset / largest)

@@ -5,14 +5,15 @@
 pub struct Rgb(pub [f64; 3]);
 
 impl Rgb {
+    /// Black.
     pub const BLACK: Self = Self([0.0; 3]);
 
-    /// From sRGB-encoded channels in 0..1.
+    /// Converts sRGB-encoded channels in 0..1.
     pub fn from_srgb(srgb: [f64; 3]) -> Self {
         Self(srgb.map(linear_from_srgb))
     }
 
-    /// To sRGB-encoded channels.
+    /// Converts to sRGB-encoded channels.
     pub fn to_srgb(self) -> [f64; 3] {
         self.0.map(srgb_from_linear)
     }

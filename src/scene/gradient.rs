@@ -29,8 +29,9 @@ pub struct Precomputed {
 }
 
 impl Precomputed {
+    /// The possible distances of two directions, in voxels.
     pub const SCALES: RangeInclusive<u32> = 1..=8;
-    /// Voxels of the smallest spacing.
+    /// The possible standard deviations of the Gaussian, in voxels of the smallest spacing.
     pub const SIGMAS_VOXELS: RangeInclusive<f64> = 0.0..=100.0;
 
     /// `sigma_voxels`: the standard deviation of the Gaussian before differencing, in voxels of the
@@ -64,6 +65,8 @@ impl Precomputed {
         self.scale
     }
 
+    /// The standard deviation of the Gaussian before differencing, in voxels of the smallest spacing; 0
+    /// for none.
     pub fn sigma_voxels(self) -> f64 {
         self.sigma_voxels
     }

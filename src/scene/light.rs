@@ -99,10 +99,15 @@ pub enum Reflection {
 /// Two-sided: the normal is turned to the viewer before anything else.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phong {
+    /// The specular term.
     pub reflection: Reflection,
+    /// The share of the base colour that is there without light.
     pub ambient: Reflectance,
+    /// The share of the base colour that is reflected diffusely.
     pub diffuse: Reflectance,
+    /// The strength of the highlight.
     pub specular: Reflectance,
+    /// The exponent of the highlight: the larger, the smaller.
     pub shininess: Shininess,
 }
 

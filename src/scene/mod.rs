@@ -1,4 +1,4 @@
-//! What to look at and how: plain, validated data. No GPU, no volume, no command line.
+//! What to show and how: plain, validated data. No GPU, no volume, no command line.
 //!
 //! Values (iso, window, thresholds, transfer function) are physical values of the volume; lengths
 //! are millimetres, unless a name says voxels; colours are linear light unless a name says sRGB.
@@ -53,15 +53,21 @@ use crate::subject::Subject;
 /// Everything that determines a picture of a given volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
+    /// The picture's size in pixels.
     pub size: ImageSize,
+    /// The eye and the lens.
     pub camera: Camera,
+    /// The kind of picture: a surface, a projection or a medium.
     pub picture: Picture,
-    /// At most [`ClipPlane::MAX_COUNT`]: a ray sees what lies on the kept side of all.
+    /// The clip planes, at most [`ClipPlane::MAX_COUNT`]: a ray sees what lies on the kept side of all.
     pub clip_planes: Vec<ClipPlane>,
+    /// How rays are followed.
     pub sampling: Sampling,
+    /// The light source for shading.
     pub light: Light,
-    /// Of normals, in the layer and in shading.
+    /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
+    /// The tone curve of display pictures.
     pub tone: Tone,
 }
 

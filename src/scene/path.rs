@@ -8,17 +8,17 @@ use super::Camera;
 use crate::error::{Error, Result};
 use crate::number_text::numbers;
 
-/// What an orbit turns about: a line through the camera's target (`--axis`).
+/// The axis of an orbit: a line through the camera's target (`--axis`).
 ///
 /// The camera's own up is how 3D Slicer spins a view (its yaw) and what ParaView's orbit takes for
 /// its normal; it is never the line of sight. World z is the patient's long axis, about which a
 /// C-arm turns: where the eye is raised it stays as high, and the patient upright.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum OrbitAxis {
-    /// Up in the first frame's picture, at a right angle to its line of sight.
+    /// The axis points up in the first frame's picture, at a right angle to its line of sight.
     #[default]
     Up,
-    /// To the right in the first frame's picture.
+    /// The axis points to the right in the first frame's picture.
     Right,
     /// A unit direction in world space (LPS).
     World(DVec3),
@@ -54,6 +54,8 @@ impl FrameCount {
     /// Nine hours at 30 a second.
     pub const MAX: u32 = 1_000_000;
 
+    /// Makes a number of frames.
+    ///
     /// # Errors
     /// No frames, or more than [`Self::MAX`] (usage).
     pub fn new(frames: u32) -> Result<Self> {
@@ -66,6 +68,7 @@ impl FrameCount {
         )))
     }
 
+    /// The number of frames.
     pub fn get(self) -> u32 {
         self.0
     }

@@ -14,16 +14,24 @@ use super::{
 pub enum Picture {
     /// `iso`: the first point on the ray's interval where Φ − iso changes sign.
     Surface {
+        /// The iso value, physical.
         iso: f64,
         /// A ray that enters its interval through a face or a clip plane where Φ ≥ iso hits there.
         caps: bool,
+        /// How a crossing between two samples is refined.
         refine: Refine,
+        /// The surface's colour, linear light.
         color: Rgb,
-        /// `None`: the colour alone.
+        /// The shading; `None`: the colour alone.
         phong: Option<Phong>,
     },
     /// `mip`, `minip`, `mean`, `lmip`: one value per ray, shown through a window.
-    Projection { of: Projection, window: Window },
+    Projection {
+        /// The value of a ray that is shown.
+        of: Projection,
+        /// The values shown as black and as white.
+        window: Window,
+    },
     /// `dvr`: emission and absorption under a transfer function.
     Emission(Emission),
 }
@@ -31,9 +39,11 @@ pub enum Picture {
 /// An emitting, absorbing medium, and how it is integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Emission {
+    /// The transfer function: colour and opacity of each value.
     pub transfer: TransferFunction,
     /// `None`: the transfer function's colours alone.
     pub phong: Option<Phong>,
+    /// The quadrature rule, with its error bound if it has one.
     pub quadrature: Quadrature,
     /// A ray ends where its opacity exceeds this; the colour lost is at most
     /// (1 − termination) times the brightest colour.
@@ -101,20 +111,25 @@ impl Picture {
     }
 }
 
-/// Which value of a ray is shown.
+/// The value of a ray that is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Projection {
+    /// The largest value.
     Maximum,
+    /// The smallest value.
     Minimum,
+    /// The mean value.
     Mean,
     /// The first local maximum ≥ threshold, else the maximum. Both ends of the interval count as
     /// local maxima when the value falls away from them (Sato et al. 1998).
     LocalMaximum {
+        /// The smallest value, physical, that counts.
         threshold: f64,
     },
 }
 
 impl Projection {
+    /// The mode that shows this projection.
     pub fn mode(self) -> Mode {
         match self {
             Self::Maximum => Mode::Mip,
@@ -134,6 +149,8 @@ pub struct Window {
 }
 
 impl Window {
+    /// Makes a window from the values shown as black and as white.
+    ///
     /// # Errors
     /// The ends are the same value, or either is beyond single precision.
     pub fn new(black: f64, white: f64) -> Result<Self> {

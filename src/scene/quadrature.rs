@@ -25,11 +25,12 @@ pub enum QuadratureMethod {
     /// The field linear across the panel, the transfer function as it is (Röttger et al. 2000;
     /// Engel et al. 2001): order 2, and no value between the two samples is missed.
     Preintegrated,
-    /// No fixed step: panels as short as an error bound needs them.
+    /// Panels as short as an error bound needs them, without a fixed step.
     Adaptive,
 }
 
 impl QuadratureMethod {
+    /// All rules.
     pub const ALL: [Self; 7] = [
         Self::Riemann,
         Self::Midpoint,
@@ -49,7 +50,9 @@ pub struct Quadrature {
 }
 
 impl Quadrature {
+    /// The possible error bounds of adaptive quadrature, in linear light of 0..1.
     pub const BOUNDS: std::ops::RangeInclusive<f64> = 1e-5..=0.1;
+    /// The error bound of adaptive quadrature if none is given.
     pub const DEFAULT_BOUND: f64 = 1e-3;
 
     /// Constructs a rule with its default bound.

@@ -89,7 +89,7 @@ impl Reflectance {
 }
 
 impl Termination {
-    /// No ray ends before the volume does.
+    /// The termination that ends no ray before the volume does.
     pub const NEVER: Self = Self(1.0);
 }
 

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 pub enum Filter {
     /// The value of the nearest voxel centre; half-way goes to the higher index.
     Nearest,
+    /// Trilinear between the 8 voxel centres of a cell.
     #[default]
     Linear,
 }
@@ -17,21 +18,22 @@ pub enum Filter {
 /// How nodes that cannot contribute are skipped. All give the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Traverse {
-    /// No hierarchy: one finest node after the other.
+    /// One finest node after the other, without a hierarchy.
     Uniform,
-    /// From the root again after every node (stackless; Lesar et al. 2015).
+    /// A descent from the root after every node (stackless; Lesar et al. 2015).
     KdRestart,
-    /// Up and down from the present node.
+    /// A walk up and down from the present node.
     Hierarchical,
     /// Top down, each node on the way once, its children in the order of the ray (Revelles et al.
     /// 2000, in integers, so that rounding cannot change the order).
     Revelles,
-    /// No hierarchy, but every finest node knows how far around it is nothing else (a Chebyshev
-    /// distance map; Deakin and Knackstedt 2019).
+    /// A distance map without a hierarchy: every finest node knows how far around it is nothing else
+    /// (Chebyshev distances; Deakin and Knackstedt 2019).
     Distance,
 }
 
 impl Traverse {
+    /// All traversals.
     pub const ALL: [Self; 5] = [
         Self::Uniform,
         Self::KdRestart,
@@ -44,20 +46,21 @@ impl Traverse {
 /// How a device holds the voxels and reads them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Storage {
-    /// In a buffer.
+    /// The voxels are in a buffer.
     #[default]
     Buffer,
-    /// In an image, voxel by voxel; the same picture as from a buffer.
+    /// The voxels are in an image and read one by one; the same picture as from a buffer.
     Image,
-    /// In an image whose own linear filter gives the field's samples. GPUs filter with weights of eight
-    /// bits (CUDA C++ Programming Guide, Texture Fetching, Linear Filtering).
+    /// The voxels are in an image whose own linear filter gives the field's samples. GPUs filter with
+    /// weights of eight bits (CUDA C++ Programming Guide, Texture Fetching, Linear Filtering).
     Filtered,
 }
 
 impl Storage {
+    /// All storages.
     pub const ALL: [Self; 3] = [Self::Buffer, Self::Image, Self::Filtered];
 
-    /// Whether rays can be followed in this way.
+    /// Checks that rays can be followed by this traversal.
     ///
     /// # Errors
     /// Usage: the device is to filter where cells are solved from their voxels, or where nothing is
@@ -68,24 +71,24 @@ impl Storage {
         }
         if method == SamplingMethod::Exact {
             return Err(Error::usage(
-                "'voxels' = filtered does not go with exact sampling, which solves the field from the voxels themselves",
+                "'voxels' = filtered cannot be combined with exact sampling, which solves the field from the voxels themselves",
             )
-            .hint("say --sampling fixed, in dvr a --quad of fixed steps; or --voxels image"));
+            .hint("use --sampling fixed, or in dvr a --quad of fixed steps; or --voxels image"));
         }
         if filter == Filter::Nearest {
             return Err(Error::usage(
-                "'voxels' = filtered does not go with 'filter' = nearest, which takes voxels as they are",
+                "'voxels' = filtered cannot be combined with 'filter' = nearest, which takes voxels as they are",
             )
-            .hint("leave one of both out, or say --voxels image"));
+            .hint("leave one of the two out, or use --voxels image"));
         }
         Ok(())
     }
 }
 
-/// Where on a ray the field is looked at.
+/// Where on a ray the field is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum SamplingMethod {
-    /// At fixed steps.
+    /// The field is sampled at fixed steps.
     Fixed,
     /// Everywhere: in every cell that matters, the field's cubic along the ray is solved.
     #[default]
@@ -97,10 +100,13 @@ pub enum SamplingMethod {
 pub enum RefineMethod {
     /// The sample behind the crossing.
     None,
+    /// Bisection: the bracket is halved in every iteration.
     Bisection,
     /// Guarded: an iteration that does not halve the bracket is followed by a bisection.
     RegulaFalsi,
+    /// The Illinois method (Dowell and Jarratt 1971).
     Illinois,
+    /// Newton's method.
     Newton,
 }
 
@@ -112,6 +118,7 @@ pub struct Refine {
 }
 
 impl Refine {
+    /// The most iterations.
     pub const MAX_ITERATIONS: u32 = 32;
 
     /// Constructs a refiner of so many iterations, from 1 to [`Self::MAX_ITERATIONS`]; `RefineMethod::None`
@@ -160,7 +167,7 @@ impl FromStr for Refine {
     fn from_str(text: &str) -> Result<Self> {
         let wrong = || {
             Error::usage(format!(
-                "'{text}' is not a refiner: :N is for 1 to {} iterations, and none has none",
+                "'{text}' is not a refiner: :N gives 1 to {} iterations; 'none' takes no :N",
                 Self::MAX_ITERATIONS
             ))
         };
@@ -193,17 +200,20 @@ impl std::fmt::Display for Refine {
 /// How a ray is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// Of surfaces and projections.
+    /// How surfaces and projections are sampled.
     pub method: SamplingMethod,
     /// Distance of samples where they are at fixed steps.
     pub step: StepVoxels,
+    /// The reconstruction filter.
     pub filter: Filter,
+    /// How nodes that cannot contribute are skipped.
     pub traverse: Traverse,
     /// Whether nodes that cannot contribute are skipped; never changes the picture.
     pub skip: bool,
     /// Whether surfaces and extrema are also looked for between two samples where the field's
     /// slopes along the ray point at a peak; without it a fixed step is all there is.
     pub probe: bool,
+    /// How the device holds and reads the voxels.
     pub voxels: Storage,
 }
 

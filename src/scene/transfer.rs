@@ -8,9 +8,11 @@ use super::Rgb;
 /// A point of a transfer function: linear-light colour and opacity at a physical value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knot {
+    /// The physical value.
     pub value: f64,
+    /// The colour, linear light.
     pub color: Rgb,
-    /// Of a path of the unit length, 0..1.
+    /// The opacity of a path of the unit length, 0..1.
     pub opacity: f64,
 }
 
@@ -24,7 +26,9 @@ pub struct TransferFunction {
 impl TransferFunction {
     /// Opacity is limited to this, so that absorption stays finite.
     pub const MAX_OPACITY: f64 = 0.999_999;
+    /// The most knots.
     pub const MAX_KNOTS: usize = 4096;
+    /// The possible unit lengths, mm.
     pub const UNIT_LENGTH_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
     /// Knots ascending in value; two knots at the same value are a jump, the later one holding
@@ -71,6 +75,7 @@ impl TransferFunction {
         })
     }
 
+    /// The knots, ascending in value.
     pub fn knots(&self) -> &[Knot] {
         &self.knots
     }
@@ -95,7 +100,7 @@ impl TransferFunction {
         knots
     }
 
-    /// The same function of values that `moved` gives, which must keep their order (but for
+    /// Returns the same function of values that `moved` gives, which must keep their order (but for
     /// rounding).
     #[must_use]
     pub fn moved(&self, moved: impl Fn(f64) -> f64) -> Self {
@@ -113,6 +118,7 @@ impl TransferFunction {
         }
     }
 
+    /// The length of the path to which opacities refer, mm.
     pub fn unit_length_mm(&self) -> f64 {
         self.unit_length_mm
     }

@@ -21,14 +21,15 @@ pub struct TransferFile {
     /// The path length which the opacities are of, mm.
     #[serde(default = "one", deserialize_with = "positive")]
     pub unit_length_mm: f64,
-    /// What the points' values are.
+    /// The units of the points' values.
     #[serde(default)]
     pub units: TransferUnits,
+    /// The points: value, red, green, blue and opacity each, ascending in value.
     #[serde(deserialize_with = "ascending")]
     pub points: Vec<[f64; 5]>,
 }
 
-/// What the values of a transfer function's points are.
+/// The units of the values of a transfer function's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TransferUnits {
@@ -82,7 +83,7 @@ impl TransferFile {
         Self::parse(&text, &path.display().to_string())
     }
 
-    /// From TOML; `place` names the text in errors.
+    /// Parses TOML; `place` names the text in errors.
     ///
     /// # Errors
     /// Anything wrong, as `place:line: …`.
@@ -90,7 +91,7 @@ impl TransferFile {
         toml::from_str(text).map_err(|error| located(&error, text, place))
     }
 
-    /// The same function over physical values, its shares taken of this range.
+    /// Returns the same function over physical values, its shares taken of this range.
     #[must_use]
     pub fn in_values(mut self, range: Range) -> Self {
         if self.units == TransferUnits::Range {
@@ -102,7 +103,7 @@ impl TransferFile {
         self
     }
 
-    /// In linear light, its shares taken of this range.
+    /// Converts to linear light, its shares taken of this range.
     ///
     /// # Errors
     /// As [`TransferFunction::new`].
@@ -218,7 +219,7 @@ impl<'de> Visitor<'de> for PointAfter {
         }
         if let Some(before) = self.0.filter(|before| value < before[0]) {
             return Err(de::Error::custom(format!(
-                "the value {} is below the one before it, {}: points ascend",
+                "the value {} is below the one before it, {}: points must ascend",
                 concise(value),
                 concise(before[0])
             )));

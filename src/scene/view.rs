@@ -7,12 +7,18 @@ use crate::extent::ImageSize;
 /// The side of the patient on which the eye is (`--view`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum View {
+    /// From the patient's front.
     #[default]
     Anterior,
+    /// From the patient's back.
     Posterior,
+    /// From the patient's left.
     Left,
+    /// From the patient's right.
     Right,
+    /// From above the head.
     Superior,
+    /// From below the feet.
     Inferior,
 }
 
@@ -20,7 +26,9 @@ pub enum View {
 /// (LPS).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orientation {
+    /// The unit direction from the target to the eye.
     pub toward_eye: DVec3,
+    /// The unit direction to the picture's top.
     pub up: DVec3,
 }
 
@@ -40,7 +48,7 @@ impl Orientation {
         Self { toward_eye, up }
     }
 
-    /// Of an eye in this direction from the target, its `up` made orthogonal; `None` where they
+    /// The view of an eye in this direction from the target, its `up` made orthogonal; `None` if they
     /// are zero or parallel.
     pub fn looking(toward_eye: DVec3, up: DVec3) -> Option<Self> {
         let toward_eye = toward_eye.try_normalize()?;

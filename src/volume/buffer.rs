@@ -14,6 +14,7 @@ use crate::volume::MappedFile;
 
 /// A voxel type which the device reads as it is.
 pub trait Voxel: Pod + Send + Sync + PartialOrd + Into<f64> {
+    /// The type's tag.
     const TYPE: VoxelType;
 }
 
@@ -33,15 +34,21 @@ impl Voxel for f32 {
 /// The voxel types which the device reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VoxelType {
+    /// Unsigned 8-bit integers.
     U8,
+    /// Unsigned 16-bit integers.
     U16,
+    /// Signed 16-bit integers.
     I16,
+    /// Single-precision floats.
     F32,
 }
 
 impl VoxelType {
+    /// All voxel types.
     pub const ALL: [Self; 4] = [Self::U8, Self::U16, Self::I16, Self::F32];
 
+    /// The type's name: `u8`, `u16`, `i16` or `f32`.
     pub fn name(self) -> &'static str {
         match self {
             Self::U8 => "u8",
@@ -51,6 +58,7 @@ impl VoxelType {
         }
     }
 
+    /// The size of a voxel in bytes.
     pub fn bytes(self) -> usize {
         match self {
             Self::U8 => 1,
@@ -68,7 +76,9 @@ impl fmt::Display for VoxelType {
 
 /// `len` voxels, owned or lying in a mapped file.
 pub enum VoxelBuffer<T> {
+    /// Voxels in memory of their own.
     Owned(Vec<T>),
+    /// Voxels in a mapped file.
     Mapped(MappedVoxels),
 }
 
@@ -130,9 +140,13 @@ impl<T> fmt::Debug for VoxelBuffer<T> {
 /// A volume's voxels, x fastest.
 #[derive(Debug)]
 pub enum Voxels {
+    /// Unsigned 8-bit integers.
     U8(VoxelBuffer<u8>),
+    /// Unsigned 16-bit integers.
     U16(VoxelBuffer<u16>),
+    /// Signed 16-bit integers.
     I16(VoxelBuffer<i16>),
+    /// Single-precision floats.
     F32(VoxelBuffer<f32>),
 }
 
@@ -183,6 +197,7 @@ impl From<Vec<f32>> for Voxels {
 }
 
 impl Voxels {
+    /// The type of the voxels.
     pub fn voxel_type(&self) -> VoxelType {
         match self {
             Self::U8(_) => VoxelType::U8,
@@ -192,10 +207,12 @@ impl Voxels {
         }
     }
 
+    /// The number of voxels.
     pub fn len(&self) -> usize {
         with_voxels!(self, slice => slice.len())
     }
 
+    /// Whether there are no voxels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

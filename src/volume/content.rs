@@ -1,4 +1,4 @@
-//! A volume told from others by what is in it.
+//! The identity of a volume by its content.
 
 use super::Volume;
 

@@ -27,6 +27,7 @@ impl Default for Geometry {
 impl Geometry {
     /// The spacings with which rays can be computed.
     pub const SPACING_MM: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+    /// The farthest origin from world 0 along any axis, mm.
     pub const FARTHEST_ORIGIN_MM: f64 = 1e12;
 
     /// `direction`'s columns are the world directions of the index axes; they are normalised here.
@@ -69,8 +70,8 @@ impl Geometry {
         })
     }
 
-    /// As [`Geometry::new`]; an axis of negative spacing is turned round, and its origin stays: so
-    /// ITK reads such files.
+    /// Makes a geometry like [`Geometry::new`], but an axis of negative spacing is turned round while
+    /// its origin stays, as ITK reads such files.
     ///
     /// # Errors
     /// As [`Geometry::new`].
@@ -84,7 +85,7 @@ impl Geometry {
         Self::new(origin_mm, turned, spacing_mm * sign)
     }
 
-    /// From a whole affine map, such as NIfTI's sform after conversion to LPS.
+    /// Converts a whole affine map, such as NIfTI's sform after conversion to LPS.
     ///
     /// # Errors
     /// As [`Geometry::new`].
@@ -94,14 +95,17 @@ impl Geometry {
         Self::new(world_from_index.translation, m, spacing_mm)
     }
 
+    /// The centre of the first voxel, world space, mm.
     pub fn origin_mm(&self) -> DVec3 {
         self.origin_mm
     }
 
+    /// The unit directions of the index axes in world space, as columns.
     pub fn direction(&self) -> DMat3 {
         self.direction
     }
 
+    /// The distance of neighbouring voxel centres along each index axis, mm.
     pub fn spacing_mm(&self) -> DVec3 {
         self.spacing_mm
     }
@@ -111,6 +115,7 @@ impl Geometry {
         self.spacing_mm.min_element()
     }
 
+    /// The map from index space to world space (mm).
     pub fn world_from_index(&self) -> DAffine3 {
         DAffine3 {
             matrix3: self.direction * DMat3::from_diagonal(self.spacing_mm),
@@ -118,6 +123,7 @@ impl Geometry {
         }
     }
 
+    /// The map from world space (mm) to index space.
     pub fn index_from_world(&self) -> DAffine3 {
         self.world_from_index().inverse()
     }

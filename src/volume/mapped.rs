@@ -9,8 +9,8 @@ use memmap2::Mmap;
 
 use super::shortened::{Watch, watch};
 
-/// A mapped file. What of it is shortened away while it is read is noticed where the program has asked
-/// for that with [`super::end_when_shortened`].
+/// A mapped file. If it is shortened while it is read, that is noticed if the program has requested
+/// it with [`super::end_when_shortened`].
 #[derive(Debug)]
 pub struct MappedFile {
     map: Mmap,

@@ -36,24 +36,29 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::extent::{Dims, Range};
 
-/// `physical = slope · stored + intercept`, slope > 0: the file's own calibration, kept beside the
+/// `physical = slope · stored + intercept`, slope > 0: the file's own calibration, stored beside the
 /// voxels so that they keep their type.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rescale {
+    /// The factor, positive.
     pub slope: f64,
+    /// The physical value of the stored 0.
     pub intercept: f64,
 }
 
 impl Rescale {
+    /// The calibration that changes nothing.
     pub const IDENTITY: Self = Self {
         slope: 1.0,
         intercept: 0.0,
     };
 
+    /// Converts a stored value to a physical one.
     pub fn physical(self, stored: f64) -> f64 {
         self.slope * stored + self.intercept
     }
 
+    /// Converts a physical value to a stored one.
     pub fn stored(self, physical: f64) -> f64 {
         (physical - self.intercept) / self.slope
     }
@@ -69,7 +74,7 @@ impl Rescale {
         }
     }
 
-    /// This calibration of what `inner` gives.
+    /// Combines this calibration with `inner`, which is applied first.
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
         Self {
@@ -79,13 +84,13 @@ impl Rescale {
     }
 }
 
-/// What to do with NaN and ±Inf voxels (`--non-finite`).
+/// The treatment of NaN and ±Inf voxels (`--non-finite`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum NonFinite {
     /// Count them and read them as the smallest finite value of the volume.
     #[default]
     Replace,
-    /// Fail.
+    /// An error is returned.
     Refuse,
 }
 
@@ -187,7 +192,7 @@ impl Volume {
         Ok(())
     }
 
-    /// A negative slope would turn maxima into minima: such voxels are kept negated, which is exact
+    /// A negative slope would turn maxima into minima: such voxels are stored negated, which is exact
     /// in single precision, with the slope's magnitude.
     fn settle_falling_slope(&mut self) -> Result<()> {
         if self.rescale.slope > 0.0 {
@@ -199,8 +204,9 @@ impl Volume {
             min: -self.stored_range.max,
             max: -self.stored_range.min,
         };
-        self.notes
-            .push("the calibration slope is negative: the voxels are kept negated, as f32".into());
+        self.notes.push(
+            "the calibration slope is negative: the voxels are stored negated, as f32".into(),
+        );
         Ok(())
     }
 
@@ -227,14 +233,14 @@ impl Volume {
         Ok(())
     }
 
-    /// By which power of two the voxels, of `largest` magnitude, are divided: to about 1, but large ones
-    /// only so far that the smallest beside them keeps its digits. Where no power does both, differences
-    /// must not overflow, and the smallest are coarser.
+    /// The power of two by which the voxels, of `largest` magnitude, are divided: to about 1, but large
+    /// ones only so far that the smallest beside them keeps its digits. Where no power does both,
+    /// differences must not overflow, and the smallest are coarser.
     fn exponent_off(&self, largest: f64) -> f64 {
         /// A difference and its multiples below this have room.
-        const MOST_EXPONENT: f64 = 120.0;
+        const MAX_EXPONENT: f64 = 120.0;
         let to_one = largest.log2().floor();
-        let least = match &self.voxels {
+        let min = match &self.voxels {
             Voxels::F32(voxels) if to_one > 0.0 => voxels
                 .par_iter()
                 .map(|voxel| voxel.abs())
@@ -242,9 +248,9 @@ impl Volume {
                 .reduce(|| f32::INFINITY, f32::min),
             _ => return to_one,
         };
-        let exactly = (least / f32::MIN_POSITIVE).log2().floor();
+        let exactly = (min / f32::MIN_POSITIVE).log2().floor();
         f64::from(exactly)
-            .max(to_one - MOST_EXPONENT)
+            .max(to_one - MAX_EXPONENT)
             .clamp(0.0, to_one)
     }
 
@@ -265,25 +271,29 @@ impl Volume {
         Ok(())
     }
 
-    /// The same volume with a sentence for the user added (say, about digits lost on reading).
+    /// Adds a sentence for the user, such as about digits lost on reading.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
+    /// The number of voxels along each axis.
     pub fn dims(&self) -> Dims {
         self.dims
     }
 
+    /// The stored voxels.
     pub fn voxels(&self) -> &Voxels {
         &self.voxels
     }
 
+    /// The spacing, origin and direction.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
+    /// The calibration from stored to physical values.
     pub fn rescale(&self) -> Rescale {
         self.rescale
     }
@@ -412,15 +422,15 @@ mod tests {
             let volume = of(voxels.clone());
             let values: Vec<f64> = voxels.iter().copied().map(f64::from).collect();
             assert_eq!(physical(&volume), values);
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-            assert_eq!(volume.range().min, least);
+            let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+            assert_eq!(volume.range().min, min);
             assert!(volume.stored_range().max < 121_f64.exp2());
         }
-        // No power does both: the range is still that of the voxels as they are kept.
+        // No power does both: the range is still that of the voxels as they are stored.
         let volume = of(vec![3e38, 1e-41]);
-        let kept = physical(&volume);
+        let stored = physical(&volume);
         assert!(volume.stored_range().max < 121_f64.exp2());
-        assert!(kept[1] != f64::from(1e-41_f32) && volume.range().min == kept[1]);
+        assert!(stored[1] != f64::from(1e-41_f32) && volume.range().min == stored[1]);
     }
 
     #[test]

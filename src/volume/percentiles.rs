@@ -6,9 +6,9 @@ use super::{Volume, Voxels};
 /// Values of a key's upper or lower half.
 const HALF: usize = 1 << 16;
 
-/// For each of `percents` (0 to 100) the physical value at that nearest rank: the smallest voxel
-/// value that at least so many percent of the voxels do not exceed. It is always the value of some
-/// voxel, whatever the voxel type and however far away the extremes lie.
+/// The physical value at the nearest rank of each of `percents` (0 to 100): the smallest voxel value
+/// that at least so many percent of the voxels do not exceed. It is always the value of some voxel,
+/// whatever the voxel type and however far away the extremes lie.
 ///
 /// Nothing is sorted or copied: keys that are ordered as the values are counted by their upper 16
 /// bits, then, where a key has more, those that share a wanted rank's upper half by their lower.
@@ -118,7 +118,7 @@ mod tests {
         Volume::new(dims, voxels, geometry, rescale, NonFinite::Refuse).unwrap()
     }
 
-    /// By the definition: sorted, then looked up.
+    /// The percentiles by their definition: sorted, then looked up.
     fn by_sorting(values: &[f64], percents: &[f64]) -> Vec<f64> {
         let mut sorted = values.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);

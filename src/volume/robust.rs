@@ -55,9 +55,9 @@ pub fn stored_robust_range(volume: &Volume) -> Range {
             min: ends[0],
             max: ends[1],
         };
-        let reach = FAR * rest.width();
-        let is_low = whole.min == robust.min && rest.min - whole.min > reach;
-        let is_high = whole.max == robust.max && whole.max - rest.max > reach;
+        let far = FAR * rest.width();
+        let is_low = whole.min == robust.min && rest.min - whole.min > far;
+        let is_high = whole.max == robust.max && whole.max - rest.max > far;
         let counts = share == FEW || (is_low || is_high) && has_classes(volume, rest);
         // Where all others are of one value, the few are the subject.
         if rest.width() == 0.0 || !counts {
@@ -84,11 +84,11 @@ impl Histogram {
 
 /// Whether the values within `rest` fall into classes.
 fn has_classes(volume: &Volume, rest: Range) -> bool {
-    let tells = match volume.voxels().voxel_type() {
+    let is_clear = match volume.voxels().voxel_type() {
         VoxelType::F32 => true,
         _ => rest.width() >= BINS as f64 / 2.0,
     };
-    tells && between_class_share(&Histogram::within(volume, rest, BINS).counts) >= CLASSES
+    is_clear && between_class_share(&Histogram::within(volume, rest, BINS).counts) >= CLASSES
 }
 
 /// `robust` from the second smallest value on, where the smallest is padding; `low` is the value at
@@ -106,7 +106,7 @@ fn without_padding(volume: &Volume, robust: Range, low: f64) -> Range {
     if is_apart { rest } else { robust }
 }
 
-/// The smallest voxel value above `low`; infinity where there is none.
+/// The smallest voxel value above `low`; infinity if there is none.
 fn next_above<T: Voxel>(voxels: &[T], low: f64) -> f64 {
     let chunk = |voxels: &[T]| {
         let above = voxels.iter().map(|&v| v.into()).filter(|&v: &f64| v > low);

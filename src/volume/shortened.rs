@@ -1,4 +1,4 @@
-//! Mapped files that are shortened while they are read. Touching a page that is no more raises SIGBUS,
+//! Mapped files that are shortened while they are read. Touching a page that no longer exists raises SIGBUS,
 //! as does one that the disk cannot give: the process ends there, with a sentence that names the file.
 
 use std::path::Path;
@@ -28,7 +28,7 @@ struct Watched {
 /// The file mapped last.
 static LATEST: AtomicPtr<Watched> = AtomicPtr::new(null_mut());
 
-/// Until it is dropped, the end for whoever touches what is no more of a mapped file.
+/// Watches the bytes of a mapped file until it is dropped: touching what is gone ends the process.
 #[derive(Debug)]
 pub(super) struct Watch {
     end: &'static AtomicUsize,
@@ -40,10 +40,10 @@ impl Drop for Watch {
     }
 }
 
-/// From now on a volume file that is shortened while it is mapped, or that its disk no longer gives,
+/// Arranges that a volume file that is shortened while it is mapped, or that its disk no longer gives,
 /// ends the process with the lines that `print` makes of the error, and the exit code of a resource that
 /// failed. For programs: it puts a handler on SIGBUS, which leaves all other causes to the handler that
-/// was there before. Asking once more changes nothing. Systems without SIGBUS need no handler.
+/// was there before. A second call changes nothing. Systems without SIGBUS need no handler.
 ///
 /// # Errors
 /// The system takes no handler.
@@ -58,7 +58,7 @@ pub fn end_when_shortened(print: fn(&Error) -> String) -> crate::error::Result<(
     Ok(())
 }
 
-/// Watches the mapped bytes of the file `path`, where the program has asked for it.
+/// Watches the mapped bytes of the file `path`, if the program has requested it.
 pub(super) fn watch(bytes: &[u8], path: &Path) -> Option<Watch> {
     let print = PRINT.get()?;
     let error = Error::resource(format!(
@@ -110,9 +110,13 @@ mod handler {
 
     use super::end_if_mapped;
 
-    /// What was done about SIGBUS before.
+    /// The handler of SIGBUS that was installed before.
     static BEFORE: OnceLock<sigaction> = OnceLock::new();
 
+    /// Installs the handler.
+    ///
+    /// # Errors
+    /// The system refuses it.
     pub fn install() -> io::Result<()> {
         // SAFETY: plain C structures, of which zeros are valid; the handler is safe in a signal's.
         unsafe {

@@ -77,7 +77,7 @@ struct Kernel {
 }
 
 impl Kernel {
-    /// For an axis of `n` voxels. Weights at distances that always end beyond the border are
+    /// The weights for an axis of `n` voxels. Weights at distances that always end beyond the border are
     /// gathered at distance n − 1, which reads the same outermost voxel.
     fn new(sigma_voxels: f64, n: usize) -> Self {
         if sigma_voxels == 0.0 || n == 1 {

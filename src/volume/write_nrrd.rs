@@ -46,7 +46,8 @@ pub fn write_nrrd(volume: &Volume, path: &Path, gzip: bool) -> Result<()> {
     write_nrrd_of(volume, type_name, endian, bytes, path, gzip)
 }
 
-/// As [`write_nrrd`], with other voxels than the volume's own: bytes of NRRD's type `type_name`.
+/// Writes an NRRD file as [`write_nrrd`] does, with other voxels than the volume's own: bytes of NRRD's
+/// type `type_name`.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -112,8 +113,7 @@ fn physical_voxels(volume: &Volume) -> Result<Vec<f64>> {
     volume.voxels().each_with(|stored| rescale.physical(stored))
 }
 
-/// The same values as f32; `None` where rounding would move one by more than a millionth of their
-/// range.
+/// The values as f32; `None` if rounding would move one by more than a millionth of their range.
 fn in_single_precision(values: &[f64]) -> Result<Option<Vec<f32>>> {
     let (min, max) = (values.iter()).fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), &v| {
         (min.min(v), max.max(v))

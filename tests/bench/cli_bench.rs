@@ -54,10 +54,13 @@ fn wrong_usage_says_what_there_is() {
         ("bench vessels --seed 5", "no effect"),
         ("bench vessels --frames 5", "no effect"),
         ("bench b1 --peer true", "no effect"),
-        ("bench speed --frames 0", "is not a whole number from 1 on"),
-        ("bench rays --rays 0", "is not a whole number from 1 on"),
-        ("bench vessels --quick --full", "do not go together"),
-        ("bench vessels --scene both.toml", "do not go together"),
+        (
+            "bench speed --frames 0",
+            "is not a whole number of at least 1",
+        ),
+        ("bench rays --rays 0", "is not a whole number of at least 1"),
+        ("bench vessels --quick --full", "cannot be combined"),
+        ("bench vessels --scene both.toml", "cannot be combined"),
         // A flag wins over the file: what is refused is another thing.
         (
             "bench vessels --scene quick.toml --full --device reference",
@@ -71,10 +74,7 @@ fn wrong_usage_says_what_there_is() {
         ("bench b1 --iso 3", "no effect without a volume"),
         ("bench b1 ball.nrrd --iso 3x", "not a value"),
         ("bench rays --protocol orbit", "times no frames"),
-        (
-            "bench speed --protocol orbit",
-            "moves the camera in its own way",
-        ),
+        ("bench speed --protocol orbit", "moves the camera by itself"),
         ("bench b1 --protocol still", "not a protocol"),
         ("bench b1 --restart", "no effect without '--output'"),
     ] {
@@ -200,7 +200,7 @@ fn traversals_of_a_volume_give_the_same_bytes() {
     assert_eq!(json["rows"][0]["volume"], "=1+1");
     assert!(json["rows"][0]["median_ms"].is_number(), "{json:#}");
 
-    // Where the files lay is nobody else's business; the control: they are named.
+    // Where the files lay is private; the control: they are named.
     let folder = place.path("").file_name().unwrap().display().to_string();
     for file in ["results.json", "results.csv", "report.html"] {
         let text = std::fs::read_to_string(place.path("out").join(file)).unwrap();
@@ -233,7 +233,7 @@ fn the_other_experiments_end_in_tables() {
         let row = rows_of.iter().find(|row| row[1] == name).unwrap();
         row[3].parse::<f64>().unwrap()
     };
-    // Half a voxel aside is worse than centred, and the truth is no gradient's own.
+    // Half a voxel aside is worse than centred, and the reference favours no gradient.
     assert!(angle("central") > 0.0 && angle("central") < 0.5 * angle("forward"));
     let rays = of("rays --rays 3000");
     let all = rows(&rays).pop().unwrap();

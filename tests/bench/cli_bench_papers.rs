@@ -236,7 +236,7 @@ fn b18_draws_four_pictures_of_one_volume_that_differ() {
 }
 
 #[test]
-fn a_named_iso_value_is_where_the_volume_is_looked_at() {
+fn a_named_iso_value_is_the_one_that_is_shown() {
     let Some(device) = common::device_flag() else {
         return;
     };

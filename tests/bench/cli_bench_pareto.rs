@@ -35,7 +35,7 @@ fn error_of(settings: &[Setting], name: &str) -> f64 {
 }
 
 #[test]
-fn the_grid_is_judged_and_nothing_clearly_beats_its_front() {
+fn the_grid_is_evaluated_and_nothing_clearly_beats_its_front() {
     let Some(device) = common::device() else {
         return;
     };

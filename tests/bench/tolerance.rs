@@ -46,9 +46,9 @@ fn options(text: &str) -> SceneOptions {
 }
 
 /// The error in the metric's own definition, of whole pictures.
-fn figure(metric: ErrorMetric, truth: &Frame, frame: &Frame, volume: &Volume) -> f64 {
-    let color = || color_error(truth, frame).unwrap();
-    let depth = || depth_error(truth, frame, volume.geometry().smallest_spacing_mm()).unwrap();
+fn figure(metric: ErrorMetric, reference: &Frame, frame: &Frame, volume: &Volume) -> f64 {
+    let color = || color_error(reference, frame).unwrap();
+    let depth = || depth_error(reference, frame, volume.geometry().smallest_spacing_mm()).unwrap();
     match metric {
         ErrorMetric::Rmse => color().rmse,
         ErrorMetric::Max => color().max,
@@ -61,7 +61,10 @@ fn figure(metric: ErrorMetric, truth: &Frame, frame: &Frame, volume: &Volume) ->
         }
         ErrorMetric::Value => {
             let range = volume.range().width();
-            value_error(truth, frame, range).unwrap().max.unwrap_or(0.0)
+            value_error(reference, frame, range)
+                .unwrap()
+                .max
+                .unwrap_or(0.0)
         }
     }
 }
@@ -109,11 +112,11 @@ fn the_chosen_setting_keeps_the_bound_and_coarse_ones_do_not() {
         assert!(choice.met, "{bound}");
         assert!(bound.is_met_by(choice.upper), "{bound}: {}", choice.upper);
         let scene = &choice.resolved.scene;
-        let truth = reference::render(&volume, scene, WANTED, &Silent).unwrap();
+        let reference = reference::render(&volume, scene, WANTED, &Silent).unwrap();
         let error = |renderer: &mut Renderer, choice: &SceneOptions| {
             let scene = choice.resolve(&subject).unwrap().scene;
             let frame = renderer.render(&scene, WANTED).unwrap().frame;
-            figure(bound.metric(), &truth, &frame, &volume)
+            figure(bound.metric(), &reference, &frame, &volume)
         };
         let of_chosen = error(&mut renderer, &choice.resolved.options);
         assert!(bound.is_met_by(of_chosen), "{bound}: {of_chosen}");
@@ -127,18 +130,22 @@ fn the_chosen_setting_keeps_the_bound_and_coarse_ones_do_not() {
 }
 
 /// With the reference looking at another volume than the device.
-fn choice_with_reference_of(truth: &Volume, options: &SceneOptions, bound: &str) -> Option<Choice> {
+fn choice_with_reference_of(
+    reference: &Volume,
+    options: &SceneOptions,
+    bound: &str,
+) -> Option<Choice> {
     let device = common::device()?;
     let volume = vessels();
     let octree: Octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     let subject = subject(&volume);
-    let task = task(truth, &subject, options, bound);
+    let task = task(reference, &subject, options, bound);
     Some(choose(&task, &mut renderer, &Silent).unwrap())
 }
 
 #[test]
-fn another_truth_is_noticed() {
+fn another_reference_is_noticed() {
     let options = options("mode = 'mip'\nwindow = [0, 200]\nsize = 96");
     let own = choice_with_reference_of(&vessels(), &options, "rmse:0.02");
     let Some(own) = own else { return };
@@ -171,7 +178,7 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
     for (line, wanted) in [
         (
             "--max-error rmse:0.01 --step 1",
-            "'step' exclude each other",
+            "'step' cannot be combined",
         ),
         (
             "--max-error rmse:0.01 --sampling exact",
@@ -188,7 +195,7 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
     }
     place.write("both.toml", "max-error = 'rmse:0.01'\nstep = 1\n");
     let said = place.refused("render ball.nrrd -o x.png --scene both.toml", 2);
-    assert!(said.contains("exclude each other"), "{said}");
+    assert!(said.contains("cannot be combined"), "{said}");
     assert!(!place.path("x.png").exists());
 }
 
@@ -207,7 +214,7 @@ fn the_reference_needs_no_choice() {
 }
 
 #[test]
-fn what_was_chosen_is_told_and_the_stored_scene_gives_the_same_picture() {
+fn what_was_chosen_is_reported_and_the_stored_scene_gives_the_same_picture() {
     let Some(device) = common::device() else {
         return;
     };

@@ -183,10 +183,10 @@ fn the_statistics_hold_what_is_promised() {
         }
         let layers = channels(&place, "a.exr");
         let mut names: Vec<&str> = layers.iter().map(|(name, _)| name.as_str()).collect();
-        let mut told = stats["channels"].as_array().unwrap().clone();
-        told.sort_by_key(Value::to_string);
+        let mut reported = stats["channels"].as_array().unwrap().clone();
+        reported.sort_by_key(Value::to_string);
         names.sort_unstable();
-        assert_eq!(names, told, "{mode}");
+        assert_eq!(names, reported, "{mode}");
         // The planes and the sums agree.
         for (name, key) in [("steps.N", "samples"), ("nodes.N", "nodes")] {
             let sum: f64 = channel(&layers, name).iter().map(|&n| f64::from(n)).sum();
@@ -237,7 +237,7 @@ fn the_layers_are_those_of_the_reference() {
         let line = format!("render blob.nrrd --mode {mode} --size 32 --azimuth 20 --aov all");
         place.done(&format!("{line} -o device.exr {device}"));
         place.done(&format!("{line} -o reference.exr --device reference"));
-        let (ours, truth) = (
+        let (ours, reference) = (
             channels(&place, "device.exr"),
             channels(&place, "reference.exr"),
         );
@@ -249,7 +249,8 @@ fn the_layers_are_those_of_the_reference() {
             }
         }
         assert!(channel(&ours, "cast.V").iter().all(|&v| v == 1.0), "{mode}");
-        let apart = |name, limit| share_apart(&channel(&ours, name), &channel(&truth, name), limit);
+        let apart =
+            |name, limit| share_apart(&channel(&ours, name), &channel(&reference, name), limit);
         assert!(
             apart("kind.V", 0.5) < 0.01,
             "{mode}: {}",
@@ -277,7 +278,7 @@ fn the_layers_are_those_of_the_reference() {
             assert!(apart("depth.Z", 0.05) < 0.01, "{}", apart("depth.Z", 0.05));
             // The control: a twentieth of a voxel is seen.
             let moved: Vec<f32> = channel(&ours, "depth.Z").iter().map(|z| z + 0.1).collect();
-            assert!(share_apart(&moved, &channel(&truth, "depth.Z"), 0.05) > 0.05);
+            assert!(share_apart(&moved, &channel(&reference, "depth.Z"), 0.05) > 0.05);
         }
     }
 }
@@ -312,13 +313,13 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
     assert!(samples < 100_000, "{samples}");
     let reference = view.replace(&device, "--device reference");
     place.done(&format!("render {reference} -o b.exr"));
-    let (ours, truth) = (channels(&place, "a.exr"), channels(&place, "b.exr"));
+    let (ours, reference) = (channels(&place, "a.exr"), channels(&place, "b.exr"));
     for name in ["R", "G", "B", "A"] {
-        let apart = share_apart(&channel(&ours, name), &channel(&truth, name), 1e-3);
+        let apart = share_apart(&channel(&ours, name), &channel(&reference, name), 1e-3);
         assert_eq!(apart, 0.0, "{name}");
     }
-    assert!(channel(&truth, "A").iter().any(|&a| a > 0.05));
-    // Steps that are asked for: as many as were reported, here coarse ones.
+    assert!(channel(&reference, "A").iter().any(|&a| a > 0.05));
+    // Requested steps: as many as were reported, here coarse ones.
     let said = said_by(&format!("render {view} -o a.exr --step 10"));
     assert!(
         said.contains("samples per ray") && said.contains("in all"),
@@ -413,13 +414,15 @@ fn an_inverted_window_is_the_negative_on_device_and_reference() {
         render("true.png", &format!("{inverted} --device reference"));
         render("hit.exr", &format!("{inverted} {device} --aov kind,value"));
         let hit = channel(&channels(&place, "hit.exr"), "kind.V");
-        let [up, down, truth] = ["up.png", "down.png", "true.png"].map(|name| pixels(&place, name));
+        let [up, down, reference] =
+            ["up.png", "down.png", "true.png"].map(|name| pixels(&place, name));
         let mut greys = 0;
         for (at, hit) in hit.iter().enumerate() {
-            let [up, down, truth] = [&up, &down, &truth].map(|plane| i32::from(plane[3 * at]));
+            let [up, down, reference] =
+                [&up, &down, &reference].map(|plane| i32::from(plane[3 * at]));
             assert!(
-                (down - truth).abs() <= 1,
-                "{mode} {sampling} {at}: {down} {truth}"
+                (down - reference).abs() <= 1,
+                "{mode} {sampling} {at}: {down} {reference}"
             );
             if *hit > 0.0 {
                 assert!(
@@ -501,7 +504,7 @@ fn what_may_not_change_a_picture_does_not() {
             "--skip off",
         ] {
             render("b.png", flags);
-            // The metadata says what was asked for.
+            // The metadata says what was requested.
             assert_ne!(
                 bytes(&place, "a.png"),
                 bytes(&place, "b.png"),
@@ -585,7 +588,7 @@ fn a_large_volume_takes_little_memory_beyond_its_file() {
     assert!(stats["counts"]["hits"].as_u64().unwrap() > 1000);
 }
 
-/// Rendered by a device of 1 GiB, where the driver can be told that it has no more.
+/// Rendered by a device of 1 GiB, where the driver can be limited to that.
 fn by_a_small_device(place: &Place, line: &str) -> std::process::Output {
     let mut command = place.command(line);
     command.env("POCL_MEMORY_LIMIT", "1");
@@ -601,7 +604,7 @@ fn a_device_that_is_too_small_is_reported_before_reading_and_building() {
     if !common::device().is_some_and(|d| d.info().platform.contains("Portable Computing")) {
         return common::skip("this driver's memory cannot be limited");
     }
-    // 2 GiB announced and none of it there: whoever reads sees damage.
+    // 2 GiB announced and none of it there: a reader sees damage.
     let header = "NRRD0004\ntype: float\ndimension: 3\nsizes: 1024 1024 512\nencoding: gzip\nendian: little\n\n";
     place.write("large.nrrd", &format!("{header}no gzip"));
     let line = format!("render large.nrrd -o a.png --iso 1 {device}");

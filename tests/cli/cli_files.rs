@@ -22,7 +22,7 @@ fn a_volume_is_never_written_over() {
     );
     assert!(said.contains("ball.nrrd"), "{said}");
     assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
-    // Nor what else is read, nor one output by the other, by whatever way.
+    // Nor what else is read, nor one output by the other, by whatever path.
     place.write("own.toml", "points = [[1, 1, 1, 1, 0.5]]\n");
     std::fs::create_dir(place.path("sub")).unwrap();
     for line in [
@@ -133,7 +133,7 @@ fn a_replayed_picture_is_the_same_bytes() {
             (text("content").len(), text("device").as_str()),
             (64, "reference")
         );
-        // On what rendered it, unless something else is asked for.
+        // On what rendered it, unless something else is requested.
         place.done(&format!("replay {name} -o again-{name}"));
         assert_eq!(
             bytes(&place, name),
@@ -208,7 +208,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(65), "{said}");
     assert!(
-        said.contains("its volume is not there") && said.contains("--volume"),
+        said.contains("its volume was not found") && said.contains("--volume"),
         "{said}"
     );
     done("far", "replay ../moved/a.png -o b.png");
@@ -234,7 +234,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
     done("work", "replay ../moved/a.png -o b.png");
     let output = replay("work", "replay ../moved/a.png -o c.png --volume ball.nrrd");
     assert_eq!(output.status.code(), Some(65), "{}", stderr(&output));
-    // As a scene the picture's volume is found in the same way.
+    // As a scene the picture's volume is found likewise.
     std::fs::remove_file(place.path("work/ball.nrrd")).unwrap();
     let output = replay(
         "work",
@@ -286,16 +286,16 @@ fn what_carries_no_scene_is_refused_in_one_sentence() {
     std::fs::write(place.path("cut.png"), &whole[..whole.len() / 2]).unwrap();
     for (file, as_scene, as_image) in [
         ("bare.png", "carries no scene", "carries no scene"),
-        ("a.jpg", "not a scene", "no picture that carries a scene"),
+        ("a.jpg", "not a scene", "not a picture that carries a scene"),
         (
             "latin.toml",
             "TOML in UTF-8",
-            "no picture that carries a scene",
+            "not a picture that carries a scene",
         ),
         (
             "ball.nrrd",
             "not a scene",
-            "no picture that carries a scene",
+            "not a picture that carries a scene",
         ),
         ("cut.png", "not a readable PNG", "not a readable PNG"),
         ("none.png", "none.png", "none.png"),
@@ -412,7 +412,7 @@ fn a_stopped_command_says_so_and_leaves_no_half_of_a_file() {
         assert!(said.contains(stopped), "{line}: {said}");
         assert_eq!(place.files(), before, "{line}");
     }
-    // The control: what nobody stops is written.
+    // The control: without a stop it is written.
     place.done(&format!("render ball.nrrd -o a.png {REFERENCE}"));
 }
 
@@ -449,7 +449,7 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_link_to_stdout_whose_reader_has_gone_is_no_error() {
+fn a_link_to_stdout_whose_reader_has_ended_is_no_error() {
     let place = Place::with_ball();
     let link = |name: &str, device: &str| {
         std::os::unix::fs::symlink(device, place.path(name)).unwrap();

@@ -22,7 +22,7 @@ fn texts_without_an_end_are_refused() {
     for (file, word) in [
         ("/dev/zero", "1024 KiB"),
         ("long.toml", "1024 KiB"),
-        ("pipe", "writes into it"),
+        ("pipe", "writes to it"),
     ] {
         for line in [
             format!("render ball.nrrd -o a.png --scene {file} {REFERENCE}"),
@@ -89,7 +89,7 @@ fn a_volume_that_is_shortened_while_it_is_read_ends_the_program_in_words() {
     assert!(output.stdout.is_empty());
 }
 
-/// With so many KiB of address space and no more.
+/// Runs with at most so many KiB of address space.
 fn limited(place: &Place, kib: u64, line: &str) -> Output {
     let program = env!("CARGO_BIN_EXE_angioray");
     Command::new("sh")
@@ -105,7 +105,7 @@ fn limited(place: &Place, kib: u64, line: &str) -> Output {
 #[cfg(target_os = "linux")]
 fn starved(place: &Place, line: &str, step: u64) -> u32 {
     let mut kib = 8 << 10;
-    // A loader that cannot map the program's libraries is none of the program's doing.
+    // A loader that cannot map the program's libraries is not the program's fault.
     while !limited(place, kib, "--version").status.success() {
         kib += step;
         assert!(kib < 1 << 20, "the program needs a GiB for its version");

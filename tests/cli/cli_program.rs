@@ -153,7 +153,7 @@ fn the_certificate_is_of_surfaces_alone() {
     };
     assert_eq!(render("--iso 100 --aov all"), (true, true));
     assert_eq!(render("--iso 100 --aov certificate"), (true, true));
-    // Fixed steps prove nothing that could be told.
+    // Fixed steps prove nothing that could be reported.
     assert_eq!(render("--iso 100 --aov all --step 1"), (true, false));
     for mode in ["mip", "lmip", "minip", "mean", "dvr"] {
         assert_eq!(render(&format!("--mode {mode} --aov all")), (false, false));
@@ -161,7 +161,7 @@ fn the_certificate_is_of_surfaces_alone() {
             &format!("render ball.nrrd -o b.exr --mode {mode} --aov depth,certificate {REFERENCE}"),
             2,
         );
-        let reason = format!("the layer 'certificate' does not go with mode '{mode}'");
+        let reason = format!("the layer 'certificate' cannot be combined with mode '{mode}'");
         assert!(said.contains(&reason), "{said}");
     }
     // A scene file's layer goes with its mode.
@@ -247,15 +247,15 @@ fn wrong_usage_is_exit_2() {
         ("render ball.nrrd -o a.png --size 0x5", "--size"),
         (
             "render ball.nrrd -o a.png --tf cta --device reference",
-            "'tf' does not go with",
+            "'tf' cannot be combined with",
         ),
         (
             "render ball.nrrd -o a.png --mode mip --caps on",
-            "'caps' does not go with",
+            "'caps' cannot be combined with",
         ),
         (
             "render ball.nrrd -o a.png --eye 1,2,3 --view left",
-            "exclude each other",
+            "cannot be combined",
         ),
         (
             "render ball.nrrd -o a.png --aov depth --device reference",
@@ -291,7 +291,7 @@ fn wrong_usage_is_exit_2() {
         ),
         (
             "render ball.nrrd -o a.png --scene nonsense.toml",
-            "'caps' does not go with",
+            "'caps' cannot be combined with",
         ),
         (
             "render ball.nrrd -o ball.png --stats ball.png --device reference",

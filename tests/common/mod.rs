@@ -96,7 +96,7 @@ pub const CHRIS_MRA: &str = "niivue_chris_MRA/chris_MRA.nii.gz";
 pub const AORTA: &str = "vmtk_aorta/aorta.mha";
 pub const STENT: &str = "stent_npz/stent.npz";
 
-/// One of them; `None`, and why, where there is none.
+/// One of them; if there is none, says why and returns `None`.
 pub fn real_volume(file: &str) -> Option<Volume> {
     let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
         eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");
@@ -164,7 +164,7 @@ pub fn on_reference(volume: &Volume, scene: &Scene) -> Frame {
     reference::render(volume, scene, Wanted::ALL, &Silent).unwrap()
 }
 
-/// A figure of how far a picture is from the truth.
+/// A figure of how far a picture is from the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Figure {
     /// Pixels that met another kind of thing, as a share of all.
@@ -187,7 +187,7 @@ pub enum Figure {
 }
 
 impl Figure {
-    pub fn of(self, truth: &Frame, frame: &Frame, volume: &Volume) -> f64 {
+    pub fn of(self, reference: &Frame, frame: &Frame, volume: &Volume) -> f64 {
         let voxel_mm = volume.geometry().smallest_spacing_mm();
         let range = volume.range();
         let unit = if range.width() > 0.0 {
@@ -195,12 +195,14 @@ impl Figure {
         } else {
             range.max.abs().max(1.0)
         };
-        let depth = || depth_error(truth, frame, voxel_mm).unwrap();
-        let normal = || normal_error(truth, frame).unwrap();
-        let value = || value_error(truth, frame, unit).unwrap();
+        let depth = || depth_error(reference, frame, voxel_mm).unwrap();
+        let normal = || normal_error(reference, frame).unwrap();
+        let value = || value_error(reference, frame, unit).unwrap();
         // Nothing to compare is no error: whether anything was hit is `Kind`'s business.
         match self {
-            Self::Kind => differing_pixels(truth, frame) as f64 / truth.size.pixels() as f64,
+            Self::Kind => {
+                differing_pixels(reference, frame) as f64 / reference.size.pixels() as f64
+            }
             Self::DepthMean => depth().mean.unwrap_or(0.0),
             Self::DepthP99 => depth().p99.unwrap_or(0.0),
             Self::NormalMean => normal().mean_deg.unwrap_or(0.0),
@@ -208,30 +210,30 @@ impl Figure {
             Self::ValueMean => value().mean.unwrap_or(0.0),
             Self::ValueMax => value().max.unwrap_or(0.0),
             Self::AlphaMax => {
-                let alphas = truth.color.iter().zip(&frame.color);
-                alphas.fold(0.0, |most, (a, b)| most.max(f64::from((a[3] - b[3]).abs())))
+                let alphas = reference.color.iter().zip(&frame.color);
+                alphas.fold(0.0, |max, (a, b)| max.max(f64::from((a[3] - b[3]).abs())))
             }
-            Self::ColorMean => color_mean(truth, frame),
-            Self::ColorP99 => color_error(truth, frame).unwrap().p99,
-            Self::ColorMax => color_error(truth, frame).unwrap().max,
+            Self::ColorMean => color_mean(reference, frame),
+            Self::ColorP99 => color_error(reference, frame).unwrap().p99,
+            Self::ColorMax => color_error(reference, frame).unwrap().max,
         }
     }
 }
 
 /// Pixels that met another kind of thing.
-pub fn differing_pixels(truth: &Frame, frame: &Frame) -> usize {
-    let (truth, frame) = (truth.plane(KIND).unwrap(), frame.plane(KIND).unwrap());
-    truth.iter().zip(frame).filter(|(a, b)| a != b).count()
+pub fn differing_pixels(reference: &Frame, frame: &Frame) -> usize {
+    let (reference, frame) = (reference.plane(KIND).unwrap(), frame.plane(KIND).unwrap());
+    reference.iter().zip(frame).filter(|(a, b)| a != b).count()
 }
 
-fn color_mean(truth: &Frame, frame: &Frame) -> f64 {
-    let (truth, frame) = (
-        truth.display.as_ref().unwrap(),
+fn color_mean(reference: &Frame, frame: &Frame) -> f64 {
+    let (reference, frame) = (
+        reference.display.as_ref().unwrap(),
         frame.display.as_ref().unwrap(),
     );
-    let channels = truth.iter().flatten().zip(frame.iter().flatten());
+    let channels = reference.iter().flatten().zip(frame.iter().flatten());
     let total: f64 = channels.map(|(a, b)| f64::from((a - b).abs())).sum();
-    total / (3 * truth.len()) as f64
+    total / (3 * reference.len()) as f64
 }
 
 /// The picture moved by one pixel along its rows: what every comparison must see.

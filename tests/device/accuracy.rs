@@ -42,7 +42,7 @@ impl Subject<'_> {
         scene
     }
 
-    fn truth(&self, scene: &Scene) -> Frame {
+    fn reference(&self, scene: &Scene) -> Frame {
         reference::render(self.volume, scene, Wanted::ALL, &Silent).unwrap()
     }
 
@@ -61,8 +61,9 @@ impl Subject<'_> {
         };
         let voxel_mm = self.volume.geometry().smallest_spacing_mm();
         let mut scene = self.scene(picture(Refine::default()), 0.5);
-        let truth = self.truth(&scene);
-        let mut error = |scene: &Scene| depth_error(&truth, &self.frame(scene), voxel_mm).unwrap();
+        let reference = self.reference(&scene);
+        let mut error =
+            |scene: &Scene| depth_error(&reference, &self.frame(scene), voxel_mm).unwrap();
         let probed = error(&scene);
         scene.sampling.probe = false;
         let plain = error(&scene);
@@ -90,9 +91,9 @@ impl Subject<'_> {
             window: Window::new(range.min, range.max).unwrap(),
         };
         let mut scene = self.scene(picture(Projection::Maximum), 0.25);
-        let truth = self.truth(&scene);
+        let reference = self.reference(&scene);
         let mut error = |scene: &Scene| {
-            let error = value_error(&truth, &self.frame(scene), range.width()).unwrap();
+            let error = value_error(&reference, &self.frame(scene), range.width()).unwrap();
             error.mean.unwrap()
         };
         let probed = error(&scene);
@@ -113,8 +114,8 @@ impl Subject<'_> {
             preset.transfer_function(self.volume.range()).unwrap(),
         ));
         let mut scene = self.scene(picture, 0.25);
-        let truth = self.truth(&scene);
-        let mut error = |scene: &Scene| color_error(&truth, &self.frame(scene)).unwrap().max;
+        let reference = self.reference(&scene);
+        let mut error = |scene: &Scene| color_error(&reference, &self.frame(scene)).unwrap().max;
         let fine = error(&scene);
         scene.sampling.step = StepVoxels::new(8.0).unwrap();
         let coarse = error(&scene);

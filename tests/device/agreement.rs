@@ -22,7 +22,7 @@ use glam::{DMat3, DQuat, DVec3};
 const SIZE_PX: u32 = 56;
 
 #[derive(Debug, Clone, Copy)]
-enum Look {
+enum Shown {
     Iso {
         refine: &'static str,
         caps: bool,
@@ -47,7 +47,7 @@ enum From {
 #[derive(Clone, Copy)]
 struct Row {
     volume: &'static str,
-    look: Look,
+    shown: Shown,
     /// `None`: no shading.
     reflection: Option<Reflection>,
     /// `None`: at the eye.
@@ -66,7 +66,7 @@ struct Row {
 
 const PLAIN: Row = Row {
     volume: "u8",
-    look: ISO,
+    shown: ISO,
     reflection: None,
     toward_light: None,
     from: From::Outside,
@@ -77,12 +77,12 @@ const PLAIN: Row = Row {
     tone: (0.0, 1.0, 1.0, [0.0; 3]),
     limits: &[],
 };
-const ISO: Look = Look::Iso {
+const ISO: Shown = Shown::Iso {
     refine: "regula-falsi",
     caps: true,
 };
-const fn iso(refine: &'static str, caps: bool) -> Look {
-    Look::Iso { refine, caps }
+const fn iso(refine: &'static str, caps: bool) -> Shown {
+    Shown::Iso { refine, caps }
 }
 const PHONG: Option<Reflection> = Some(Reflection::Phong);
 const BLINN: Option<Reflection> = Some(Reflection::BlinnPhong);
@@ -93,36 +93,36 @@ const SIDE: Option<[f64; 3]> = Some([0.36, -0.48, 0.8]);
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
     // The refiners, as accurate as their iterations.
-    Row { look: iso("none", true), limits: &[(Kind, 0.002), (DepthMean, 0.3)], ..PLAIN },
-    Row { look: iso("bisection", true), limits: &[(Kind, 0.002), (DepthMean, 0.01)], ..PLAIN },
-    Row { look: iso("regula-falsi", true), limits: &[(Kind, 0.002), (DepthMean, 1e-4), (DepthP99, 1e-3), (NormalMean, 0.01), (NormalP99, 0.01), (ValueMean, 1e-5)], ..PLAIN },
-    Row { look: iso("illinois", true), limits: &[(Kind, 0.002), (DepthMean, 1e-4), (DepthP99, 1e-3)], ..PLAIN },
-    Row { look: iso("newton", true), limits: &[(Kind, 0.002), (DepthMean, 0.002), (DepthP99, 0.03)], ..PLAIN },
+    Row { shown: iso("none", true), limits: &[(Kind, 0.002), (DepthMean, 0.3)], ..PLAIN },
+    Row { shown: iso("bisection", true), limits: &[(Kind, 0.002), (DepthMean, 0.01)], ..PLAIN },
+    Row { shown: iso("regula-falsi", true), limits: &[(Kind, 0.002), (DepthMean, 1e-4), (DepthP99, 1e-3), (NormalMean, 0.01), (NormalP99, 0.01), (ValueMean, 1e-5)], ..PLAIN },
+    Row { shown: iso("illinois", true), limits: &[(Kind, 0.002), (DepthMean, 1e-4), (DepthP99, 1e-3)], ..PLAIN },
+    Row { shown: iso("newton", true), limits: &[(Kind, 0.002), (DepthMean, 0.002), (DepthP99, 0.03)], ..PLAIN },
     // Caps, eyes, lenses, filter.
-    Row { look: iso("regula-falsi", false), limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
+    Row { shown: iso("regula-falsi", false), limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
     // Two grazing rays of 3,136 pass a ridge that the steps do not see and hit what is behind it.
     Row { from: From::Inside, limits: &[(Kind, 0.002), (DepthMean, 0.02), (DepthP99, 1e-3), (NormalMean, 0.2)], ..PLAIN },
-    Row { look: iso("regula-falsi", false), from: From::Inside, limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
+    Row { shown: iso("regula-falsi", false), from: From::Inside, limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
     Row { from: From::Orthographic, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
     // Corners of voxels are clipped; normals jump where voxels meet, which is where the surface is.
     Row { filter: Filter::Nearest, limits: &[(Kind, 0.006), (DepthMean, 0.06), (NormalMean, 6.0)], ..PLAIN },
     // Cut open.
     Row { clip: WEDGE, reflection: PHONG, limits: &[(Kind, 0.002), (DepthMean, 2e-4), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorMean, 1e-4)], ..PLAIN },
-    Row { clip: WEDGE, look: iso("regula-falsi", false), from: From::Inside, limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
-    Row { clip: WEDGE, look: Look::Mip, from: From::Orthographic, limits: &[(Kind, 0.001), (ValueMean, 0.001), (DepthMean, 0.3)], ..PLAIN },
-    Row { clip: WEDGE, look: Look::Mean, step_voxels: 0.25, limits: &[(ValueMean, 3e-4), (ValueMax, 0.005)], ..PLAIN },
-    Row { clip: WEDGE, look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { clip: WEDGE, shown: iso("regula-falsi", false), from: From::Inside, limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
+    Row { clip: WEDGE, shown: Shown::Mip, from: From::Orthographic, limits: &[(Kind, 0.001), (ValueMean, 0.001), (DepthMean, 0.3)], ..PLAIN },
+    Row { clip: WEDGE, shown: Shown::Mean, step_voxels: 0.25, limits: &[(ValueMean, 3e-4), (ValueMax, 0.005)], ..PLAIN },
+    Row { clip: WEDGE, shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     Row { volume: "u16", clip: WEDGE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01)], ..PLAIN },
-    Row { volume: "falling", clip: WEDGE, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "falling", clip: WEDGE, shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     // Gradients.
     Row { gradient: Gradient::Forward, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
     Row { gradient: Gradient::FourthOrder, reflection: PHONG, limits: &[(NormalMean, 0.01), (NormalP99, 0.01), (ColorMean, 1e-5)], ..PLAIN },
     Row { gradient: Gradient::FourthOrder, filter: Filter::Nearest, limits: &[(NormalMean, 6.0)], ..PLAIN },
-    Row { gradient: Gradient::Forward, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { gradient: Gradient::Forward, shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     Row { volume: "u16", gradient: Gradient::FourthOrder, limits: &[(NormalMean, 0.01)], ..PLAIN },
-    Row { volume: "i16", gradient: Gradient::FourthOrder, look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "i16", gradient: Gradient::FourthOrder, shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     Row { volume: "falling", gradient: Gradient::Forward, limits: &[(NormalMean, 0.01)], ..PLAIN },
-    Row { volume: "sheet", gradient: Gradient::FourthOrder, look: iso("regula-falsi", false), limits: &[(NormalMean, 0.01)], ..PLAIN },
+    Row { volume: "sheet", gradient: Gradient::FourthOrder, shown: iso("regula-falsi", false), limits: &[(NormalMean, 0.01)], ..PLAIN },
     // Shading and tone.
     Row { limits: &[(ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: PHONG, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
@@ -130,64 +130,64 @@ const ROWS: &[Row] = &[
     Row { reflection: PHONG, toward_light: SIDE, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: BLINN, toward_light: SIDE, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: PHONG, tone: (0.1, 1.3, 2.2, [0.1, 0.3, 0.7]), limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
-    Row { look: Look::Dvr, tone: (-0.1, 0.7, 0.6, [0.9, 0.2, 0.5]), limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, tone: (-0.1, 0.7, 0.6, [0.9, 0.2, 0.5]), limits: &[(ColorMax, 0.01)], ..PLAIN },
     // Projections.
-    Row { look: Look::Mip, limits: &[(Kind, 0.0), (ValueMean, 0.001), (DepthMean, 0.3), (ColorMean, 5e-4)], ..PLAIN },
-    Row { look: Look::Minip, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { look: Look::Mean, limits: &[(ValueMean, 3e-4), (ValueMax, 0.005)], ..PLAIN },
-    Row { look: Look::Lmip, limits: &[(ValueMean, 0.004), (DepthMean, 0.5)], ..PLAIN },
-    Row { look: Look::Mip, from: From::Inside, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { look: Look::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { look: Look::Mip, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(ValueMean, 0.005)], ..PLAIN },
-    Row { look: Look::Mean, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(ValueMean, 0.002)], ..PLAIN },
+    Row { shown: Shown::Mip, limits: &[(Kind, 0.0), (ValueMean, 0.001), (DepthMean, 0.3), (ColorMean, 5e-4)], ..PLAIN },
+    Row { shown: Shown::Minip, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { shown: Shown::Mean, limits: &[(ValueMean, 3e-4), (ValueMax, 0.005)], ..PLAIN },
+    Row { shown: Shown::Lmip, limits: &[(ValueMean, 0.004), (DepthMean, 0.5)], ..PLAIN },
+    Row { shown: Shown::Mip, from: From::Inside, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { shown: Shown::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { shown: Shown::Mip, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(ValueMean, 0.005)], ..PLAIN },
+    Row { shown: Shown::Mean, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(ValueMean, 0.002)], ..PLAIN },
     // Emission.
-    Row { look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
-    Row { look: Look::Dvr, step_voxels: 0.25, limits: &[(AlphaMax, 0.004), (ColorMax, 0.008)], ..PLAIN },
-    Row { look: Look::Dvr, from: From::Inside, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
-    Row { look: Look::Dvr, from: From::Orthographic, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
-    Row { look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { shown: Shown::Dvr, step_voxels: 0.25, limits: &[(AlphaMax, 0.004), (ColorMax, 0.008)], ..PLAIN },
+    Row { shown: Shown::Dvr, from: From::Inside, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { shown: Shown::Dvr, from: From::Orthographic, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     // The light goes out at once where normals turn from it: fine steps find where.
-    Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
-    Row { look: Look::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
-    Row { look: Look::Dvr, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(AlphaMax, 0.03)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(AlphaMax, 0.03)], ..PLAIN },
     // Its layers, by every rule; pixels at the opacity from which there are any may have them or not.
-    Row { look: Look::DvrBy("riemann"), step_voxels: 0.25, limits: &[(Kind, 0.003), (DepthMean, 0.2), (NormalMean, 3.0), (ValueMean, 0.008)], ..PLAIN },
-    Row { look: Look::DvrBy("midpoint"), step_voxels: 0.25, limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.4), (ValueMean, 1e-3)], ..PLAIN },
-    Row { look: Look::DvrBy("simpson"), limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.6), (ValueMean, 1e-3)], ..PLAIN },
-    Row { look: Look::DvrBy("romberg"), limits: &[(Kind, 0.002), (DepthMean, 0.002), (DepthP99, 0.01), (NormalMean, 0.2), (ValueMean, 2e-4)], ..PLAIN },
-    Row { look: Look::DvrBy("rk4"), limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.6), (ValueMean, 1e-3)], ..PLAIN },
-    Row { look: Look::DvrBy("preintegrated"), step_voxels: 0.25, limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.4), (ValueMean, 1e-3)], ..PLAIN },
-    Row { look: Look::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 1e-4), (DepthP99, 1e-3), (NormalMean, 0.3), (ValueMean, 1e-5)], ..PLAIN },
-    Row { look: Look::DvrBy("adaptive:1e-5"), limits: &[(Kind, 0.001), (DepthMean, 5e-5), (DepthP99, 2e-4), (NormalMean, 0.1), (ValueMean, 1e-6)], ..PLAIN },
-    Row { look: Look::DvrBy("adaptive"), filter: Filter::Nearest, limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.01), (ValueMean, 1e-6)], ..PLAIN },
-    Row { look: Look::DvrBy("adaptive"), from: From::Inside, reflection: PHONG, gradient: Gradient::FourthOrder, limits: &[(DepthMean, 1e-4), (NormalMean, 0.1), (ValueMean, 1e-5)], ..PLAIN },
-    Row { volume: "u16", look: Look::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.3), (ValueMean, 1e-5)], ..PLAIN },
-    Row { volume: "falling", look: Look::DvrBy("adaptive"), clip: WEDGE, limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.4), (ValueMean, 1e-5)], ..PLAIN },
-    Row { volume: "f32", look: Look::DvrBy("romberg"), from: From::Orthographic, limits: &[(Kind, 0.002), (DepthMean, 0.005), (NormalMean, 0.2), (ValueMean, 2e-4)], ..PLAIN },
+    Row { shown: Shown::DvrBy("riemann"), step_voxels: 0.25, limits: &[(Kind, 0.003), (DepthMean, 0.2), (NormalMean, 3.0), (ValueMean, 0.008)], ..PLAIN },
+    Row { shown: Shown::DvrBy("midpoint"), step_voxels: 0.25, limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.4), (ValueMean, 1e-3)], ..PLAIN },
+    Row { shown: Shown::DvrBy("simpson"), limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.6), (ValueMean, 1e-3)], ..PLAIN },
+    Row { shown: Shown::DvrBy("romberg"), limits: &[(Kind, 0.002), (DepthMean, 0.002), (DepthP99, 0.01), (NormalMean, 0.2), (ValueMean, 2e-4)], ..PLAIN },
+    Row { shown: Shown::DvrBy("rk4"), limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.6), (ValueMean, 1e-3)], ..PLAIN },
+    Row { shown: Shown::DvrBy("preintegrated"), step_voxels: 0.25, limits: &[(Kind, 0.002), (DepthMean, 0.006), (DepthP99, 0.04), (NormalMean, 0.4), (ValueMean, 1e-3)], ..PLAIN },
+    Row { shown: Shown::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 1e-4), (DepthP99, 1e-3), (NormalMean, 0.3), (ValueMean, 1e-5)], ..PLAIN },
+    Row { shown: Shown::DvrBy("adaptive:1e-5"), limits: &[(Kind, 0.001), (DepthMean, 5e-5), (DepthP99, 2e-4), (NormalMean, 0.1), (ValueMean, 1e-6)], ..PLAIN },
+    Row { shown: Shown::DvrBy("adaptive"), filter: Filter::Nearest, limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.01), (ValueMean, 1e-6)], ..PLAIN },
+    Row { shown: Shown::DvrBy("adaptive"), from: From::Inside, reflection: PHONG, gradient: Gradient::FourthOrder, limits: &[(DepthMean, 1e-4), (NormalMean, 0.1), (ValueMean, 1e-5)], ..PLAIN },
+    Row { volume: "u16", shown: Shown::DvrBy("adaptive"), limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.3), (ValueMean, 1e-5)], ..PLAIN },
+    Row { volume: "falling", shown: Shown::DvrBy("adaptive"), clip: WEDGE, limits: &[(Kind, 0.001), (DepthMean, 1e-4), (NormalMean, 0.4), (ValueMean, 1e-5)], ..PLAIN },
+    Row { volume: "f32", shown: Shown::DvrBy("romberg"), from: From::Orthographic, limits: &[(Kind, 0.002), (DepthMean, 0.005), (NormalMean, 0.2), (ValueMean, 2e-4)], ..PLAIN },
     // Spacing 1:1:10, oblique; the calibration of a CT scanner.
     Row { volume: "u16", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
-    Row { volume: "u16", look: Look::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "u16", look: Look::Mean, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "u16", look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    Row { volume: "u16", shown: Shown::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "u16", shown: Shown::Mean, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "u16", shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     // Left-handed, signed.
     Row { volume: "i16", reflection: PHONG, toward_light: SIDE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
-    Row { volume: "i16", look: Look::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "i16", look: Look::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
-    // Sheared axes; the calibration falls, so that the voxels are kept negated.
+    Row { volume: "i16", shown: Shown::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "i16", shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
+    // Sheared axes; the calibration falls, so that the voxels are stored negated.
     Row { volume: "falling", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
-    Row { volume: "falling", look: Look::Lmip, limits: &[(ValueMean, 0.004)], ..PLAIN },
-    Row { volume: "falling", look: Look::Minip, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "falling", look: Look::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
+    Row { volume: "falling", shown: Shown::Lmip, limits: &[(ValueMean, 0.004)], ..PLAIN },
+    Row { volume: "falling", shown: Shown::Minip, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "falling", shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     // Smooth floats.
     Row { volume: "f32", reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
-    Row { volume: "f32", look: Look::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "f32", look: Look::Dvr, limits: &[(AlphaMax, 0.005), (ColorMax, 0.01)], ..PLAIN },
+    Row { volume: "f32", shown: Shown::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "f32", shown: Shown::Dvr, limits: &[(AlphaMax, 0.005), (ColorMax, 0.01)], ..PLAIN },
     // One voxel thick.
-    Row { volume: "sheet", look: iso("regula-falsi", false), reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (ColorP99, 1e-4)], ..PLAIN },
+    Row { volume: "sheet", shown: iso("regula-falsi", false), reflection: PHONG, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (ColorP99, 1e-4)], ..PLAIN },
     Row { volume: "sheet", limits: &[(Kind, 0.002), (DepthP99, 1e-3)], ..PLAIN },
-    Row { volume: "sheet", look: Look::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "sheet", look: Look::Mean, limits: &[(ValueMean, 0.001)], ..PLAIN },
-    Row { volume: "sheet", look: Look::Dvr, limits: &[(AlphaMax, 0.01)], ..PLAIN },
+    Row { volume: "sheet", shown: Shown::Mip, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "sheet", shown: Shown::Mean, limits: &[(ValueMean, 0.001)], ..PLAIN },
+    Row { volume: "sheet", shown: Shown::Dvr, limits: &[(AlphaMax, 0.01)], ..PLAIN },
 ];
 
 /// Curved vessels over faint noise, 0..1; `p` in 0..1.
@@ -284,14 +284,14 @@ fn volume(name: &str) -> Volume {
 fn camera(volume: &Volume, from: From) -> Camera {
     let (center, radius_mm) = volume.bounding_sphere();
     let toward_eye = -common::OBLIQUE.normalize();
-    let look = |distance_mm: f64, lens| {
+    let shown = |distance_mm: f64, lens| {
         let eye = center + toward_eye * distance_mm;
         Camera::look_at(eye, eye - toward_eye, DVec3::Z, lens).unwrap()
     };
     match from {
-        From::Outside => look(radius_mm * 3.5, Lens::Perspective { fov_deg: 30.0 }),
-        From::Inside => look(radius_mm * 0.31, Lens::Perspective { fov_deg: 80.0 }),
-        From::Orthographic => look(
+        From::Outside => shown(radius_mm * 3.5, Lens::Perspective { fov_deg: 30.0 }),
+        From::Inside => shown(radius_mm * 0.31, Lens::Perspective { fov_deg: 80.0 }),
+        From::Orthographic => shown(
             radius_mm * 2.0,
             Lens::Orthographic {
                 height_mm: radius_mm * 1.7,
@@ -308,23 +308,23 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
         ..Phong::default()
     });
     let projection = |of| Picture::Projection { of, window };
-    match row.look {
-        Look::Iso { refine, caps } => Picture::Surface {
+    match row.shown {
+        Shown::Iso { refine, caps } => Picture::Surface {
             iso: range.at(0.43),
             caps,
             refine: refine.parse().unwrap(),
             color: Rgb([0.9, 0.7, 0.4]),
             phong,
         },
-        Look::Mip => projection(Projection::Maximum),
-        Look::Minip => projection(Projection::Minimum),
-        Look::Mean => projection(Projection::Mean),
-        Look::Lmip => projection(Projection::LocalMaximum {
+        Shown::Mip => projection(Projection::Maximum),
+        Shown::Minip => projection(Projection::Minimum),
+        Shown::Mean => projection(Projection::Mean),
+        Shown::Lmip => projection(Projection::LocalMaximum {
             threshold: range.at(0.4),
         }),
-        Look::Dvr | Look::DvrBy(_) => {
-            let quadrature = match row.look {
-                Look::DvrBy(rule) => rule.parse().unwrap(),
+        Shown::Dvr | Shown::DvrBy(_) => {
+            let quadrature = match row.shown {
+                Shown::DvrBy(rule) => rule.parse().unwrap(),
                 _ => Quadrature::default(),
             };
             let knot = |at, color, opacity| Knot {
@@ -380,7 +380,7 @@ fn describe(row: &Row) -> String {
     format!(
         "{} {:?} {:?} {light} {:?} {} planes {:?} {:?} step {}",
         row.volume,
-        row.look,
+        row.shown,
         row.reflection,
         row.from,
         row.clip.len(),
@@ -390,8 +390,8 @@ fn describe(row: &Row) -> String {
     )
 }
 
-/// Renders a volume's rows; what breaks a limit is told all at once.
-fn judge(name: &str) {
+/// Renders a volume's rows; all broken limits are reported at once.
+fn check(name: &str) {
     let Some(device) = common::device() else {
         return;
     };
@@ -401,14 +401,14 @@ fn judge(name: &str) {
     let frames: Vec<Frame> = on_device(&device, &volume, &scenes);
     let mut wrong = Vec::new();
     for ((row, scene), frame) in rows.iter().zip(&scenes).zip(&frames) {
-        let truth = on_reference(&volume, scene);
-        let seen = truth.color.iter().any(|c| c[3] > 0.0);
+        let reference = on_reference(&volume, scene);
+        let seen = reference.color.iter().any(|c| c[3] > 0.0);
         assert!(seen, "{}: nothing to see", describe(row));
         common::assert_sound(&describe(row), frame);
         let moved = moved_by_a_pixel(frame);
         for &(figure, limit) in row.limits {
-            let measured = figure.of(&truth, frame, &volume);
-            let control = figure.of(&truth, &moved, &volume);
+            let measured = figure.of(&reference, frame, &volume);
+            let control = figure.of(&reference, &moved, &volume);
             let line = format!(
                 "| {} | {figure:?} | {measured:.2e} | {limit} | {control:.2e} |",
                 describe(row)
@@ -428,30 +428,30 @@ fn judge(name: &str) {
 
 #[test]
 fn unsigned_bytes() {
-    judge("u8");
+    check("u8");
 }
 
 #[test]
 fn one_voxel_thick() {
-    judge("sheet");
+    check("sheet");
 }
 
 #[test]
 fn unsigned_words_one_to_ten_and_oblique() {
-    judge("u16");
+    check("u16");
 }
 
 #[test]
 fn signed_words_left_handed() {
-    judge("i16");
+    check("i16");
 }
 
 #[test]
 fn falling_calibration_and_sheared_axes() {
-    judge("falling");
+    check("falling");
 }
 
 #[test]
 fn floats() {
-    judge("f32");
+    check("f32");
 }

@@ -27,7 +27,7 @@ const VALUE_MAX: f64 = 2e-6;
 const UNDECIDED: f64 = 1e-4;
 
 /// Pixels of lmip that may differ: there a ray's first local maximum is followed by a dip of less
-/// than a millionth of its cell's spread in slope, which single precision cannot tell from none.
+/// than a millionth of its cell's spread in slope, which single precision cannot distinguish from 0.
 const SHALLOW_DIPS: usize = 2;
 
 /// A volume under test.

@@ -1,4 +1,4 @@
-//! Normals by every way of finding gradients, by the reference and on the device, against closed
+//! Normals by every method of computing gradients, by the reference and on the device, against closed
 //! forms; and what precomputed gradients cost. `--no-capture | grep '|'` prints what is measured.
 
 use crate::common;
@@ -48,8 +48,8 @@ fn hits(scene: &Scene, frame: &Frame) -> Vec<(DVec3, DVec3)> {
         .flatten()
         .zip(frame.plane(NORMAL).into_iter().flatten());
     let pixels = kinds.zip(planes).enumerate();
-    let met = pixels.filter(|(_, (kind, _))| **kind == Kind::Surface as u32);
-    met.map(|(pixel, (_, (&depth_mm, normal)))| {
+    let hits = pixels.filter(|(_, (kind, _))| **kind == Kind::Surface as u32);
+    hits.map(|(pixel, (_, (&depth_mm, normal)))| {
         let (i, j) = (pixel as u32 % width, pixel as u32 / width);
         let ray = scene
             .camera
@@ -92,16 +92,16 @@ fn angle_at_a_voxel(gradient: Gradient, h: f64) -> Vec<(&'static str, f64)> {
     scene.camera = Camera::look_at(hit - DVec3::X * 10.0, hit, DVec3::Z, lens).unwrap();
     scene.size = ImageSize::new(1, 1).unwrap();
     scene.gradient = gradient;
-    let truth = -smooth_gradient(hit).normalize();
+    let reference = -smooth_gradient(hit).normalize();
     let all = frames(&volume, std::slice::from_ref(&scene));
     all.into_iter()
-        .map(|(engine, frames)| {
+        .map(|(renderer, frames)| {
             let hits = hits(&scene, &frames[0]);
             let [(at, normal)] = hits[..] else {
-                panic!("{engine} misses at {h}")
+                panic!("{renderer} misses at {h}")
             };
-            assert!(at.distance(hit) < 1e-3, "{engine} {h}: {at}");
-            (engine, angle_deg(normal, truth))
+            assert!(at.distance(hit) < 1e-3, "{renderer} {h}: {at}");
+            (renderer, angle_deg(normal, reference))
         })
         .collect()
 }
@@ -111,13 +111,13 @@ fn normals_converge_with_the_order_of_their_differences() {
     for (gradient, order) in DIFFERENCES.into_iter().zip([1.0, 2.0, 4.0]) {
         let coarse = angle_at_a_voxel(gradient, 0.4);
         let fine = angle_at_a_voxel(gradient, 0.2);
-        for ((engine, coarse), (_, fine)) in coarse.into_iter().zip(fine) {
+        for ((renderer, coarse), (_, fine)) in coarse.into_iter().zip(fine) {
             let observed = (coarse / fine).log2();
-            println!("| {engine} | {gradient:?} | {coarse:.2e}° | {fine:.2e}° | {observed:.2} |");
+            println!("| {renderer} | {gradient:?} | {coarse:.2e}° | {fine:.2e}° | {observed:.2} |");
             // The device's hit lies within 1e-5 voxel of the centre, its planes hold f32.
             assert!(
                 (observed - order).abs() < 0.4,
-                "{engine} {gradient:?}: {observed}"
+                "{renderer} {gradient:?}: {observed}"
             );
         }
     }
@@ -174,14 +174,14 @@ fn a_ball_has_radial_normals_in_an_oblique_anisotropic_volume() {
         (precomputed(2, 1.0), 2.0),
     ];
     let scenes = limits.map(|(gradient, _)| ball_scene(&volume, gradient));
-    for (engine, frames) in frames(&volume, &scenes) {
+    for (renderer, frames) in frames(&volume, &scenes) {
         for (((gradient, limit), scene), frame) in limits.iter().zip(&scenes).zip(&frames) {
             let hits = hits(scene, frame);
-            assert!(hits.len() > 300, "{engine}: {}", hits.len());
+            assert!(hits.len() > 300, "{renderer}: {}", hits.len());
             let angles = hits.iter().map(|(p, normal)| angle_deg(*p, *normal));
-            let most = angles.fold(0.0, f64::max);
-            println!("| {engine} | {gradient:?} | {most:.3}° | {limit}° |");
-            assert!(most < *limit, "{engine} {gradient:?}: {most}°");
+            let max = angles.fold(0.0, f64::max);
+            println!("| {renderer} | {gradient:?} | {max:.3}° | {limit}° |");
+            assert!(max < *limit, "{renderer} {gradient:?}: {max}°");
             // The control: gradients taken for vectors, not mapped by the inverse transpose.
             let m = volume.geometry().world_from_index().matrix3;
             let wrong = hits.iter().map(|(p, normal)| {
@@ -266,7 +266,7 @@ fn precomputed_gradients_say_how_far_off_they_are() {
 fn where_the_gradient_vanishes_normals_face_the_eye() {
     let volume = common::volume_of([9, 7, 7], |x, _, _| ((x as u32 % 2) * 10) as f32);
     let lens = Lens::Perspective { fov_deg: 40.0 };
-    let ways = [
+    let methods = [
         Gradient::Central,
         Gradient::FourthOrder,
         precomputed(1, 0.0),
@@ -279,19 +279,19 @@ fn where_the_gradient_vanishes_normals_face_the_eye() {
         scene.gradient = gradient;
         scene
     };
-    let scenes: Vec<Scene> = (ways.iter())
-        .flat_map(|way| [from(4.2, *way), from(0.2, *way)])
+    let scenes: Vec<Scene> = (methods.iter())
+        .flat_map(|method| [from(4.2, *method), from(0.2, *method)])
         .collect();
-    for (engine, frames) in frames(&volume, &scenes) {
+    for (renderer, frames) in frames(&volume, &scenes) {
         for (scene, frame) in scenes.iter().zip(&frames) {
             let eye = scene.camera.eye_world();
             let hits = hits(scene, frame);
-            assert_eq!(hits.len(), 36, "{engine} {:?}", scene.gradient);
+            assert_eq!(hits.len(), 36, "{renderer} {:?}", scene.gradient);
             let facing = |(p, n): &&(DVec3, DVec3)| angle_deg(eye - *p, *n) < 1e-2;
             let facing = hits.iter().filter(facing).count();
             // The control: at the border there is a gradient, across the sheets.
             let expected = if eye.x > 1.0 { 36 } else { 0 };
-            assert_eq!(facing, expected, "{engine} {:?}", scene.gradient);
+            assert_eq!(facing, expected, "{renderer} {:?}", scene.gradient);
         }
     }
 }

@@ -35,7 +35,7 @@ fn total(counter: Option<&[u32]>) -> u64 {
 /// The largest difference of any channel of premultiplied linear light and opacity.
 fn apart(a: &Frame, b: &Frame) -> f64 {
     let pairs = a.color.iter().flatten().zip(b.color.iter().flatten());
-    pairs.fold(0.0, |most, (a, b)| f64::max(most, f64::from((a - b).abs())))
+    pairs.fold(0.0, |max, (a, b)| f64::max(max, f64::from((a - b).abs())))
 }
 
 /// What homogeneous leaves do to a picture: its largest error, and the share of samples saved.
@@ -85,9 +85,9 @@ fn both(device: &Device, volume: &Volume, emission: &Emission, limit: f64) -> [C
     })
 }
 
-/// The optical rule keeps its limit, also under a transfer function that is steep within a part of
+/// The optical rule keeps its limit, also under a transfer function that changes much within a part of
 /// the value range that the other rule takes for nothing; that one loses a picture.
-fn judge(name: &str, volume: &Volume, steep: TransferFunction) {
+fn check(name: &str, volume: &Volume, opaque: TransferFunction) {
     let Some(device) = common::device() else {
         return;
     };
@@ -95,7 +95,7 @@ fn judge(name: &str, volume: &Volume, steep: TransferFunction) {
         let emission = Emission {
             quadrature: Quadrature::of(quadrature),
             termination: Termination::NEVER,
-            ..Emission::of(steep.clone())
+            ..Emission::of(opaque.clone())
         };
         for limit in [0.02, 0.1] {
             let [optical, range] = both(&device, volume, &emission, limit);
@@ -124,11 +124,11 @@ fn noise_under_a_step() {
             0.5 + 0.008 * hash(x, y, z) as f32
         }
     });
-    let steep = transfer(
+    let opaque = transfer(
         &[(0.505, 0.0), (0.5051, 0.3), (0.55, 0.3), (0.551, 0.0)],
         4.0,
     );
-    judge("noise", &volume, steep);
+    check("noise", &volume, opaque);
 }
 
 fn real(file: &str) -> Option<Volume> {
@@ -152,8 +152,8 @@ fn faint_values_of_a_real_angiogram() {
     let Some(volume) = real("aneurism_toxi/aneurism.raw.gz") else {
         return;
     };
-    let steep = transfer(&[(1.2, 0.0), (1.3, 0.5), (2.4, 0.5), (2.5, 0.0)], 1.0);
-    judge("aneurism", &volume, steep);
+    let opaque = transfer(&[(1.2, 0.0), (1.3, 0.5), (2.4, 0.5), (2.5, 0.0)], 1.0);
+    check("aneurism", &volume, opaque);
 }
 
 /// Where the medium is the same all over a leaf, the optical rule does save samples.
@@ -374,9 +374,9 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
     assert!(first > voxels, "{first}");
     // A byte a node, a bit a cell, and the knots.
     let cells: u64 = volume.dims().cells().map(u64::from).iter().product();
-    let least = octree.ranges().len() as u64 + cells / 8;
+    let min = octree.ranges().len() as u64 + cells / 8;
     assert!(
-        (least..least + 10_000).contains(&second) && second < voxels / 5,
+        (min..min + 10_000).contains(&second) && second < voxels / 5,
         "{second}"
     );
     // And nothing again for the same one, nor for the one before it, until they are forgotten.
@@ -384,7 +384,7 @@ fn another_transfer_function_uploads_tables_and_no_voxels() {
         assert!(uploaded(&mut renderer, preset) < 10_000, "{preset}");
     }
     renderer.forget_classes();
-    assert!(uploaded(&mut renderer, "mra") > least);
+    assert!(uploaded(&mut renderer, "mra") > min);
     // The oldest of many is forgotten too: its memory is another's.
     let held = |renderer: &mut Renderer, iso: f64| {
         let surface = Picture::Surface {

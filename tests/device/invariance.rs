@@ -1,4 +1,4 @@
-//! What must never change one bit of a picture: skipping, the way through the octree, the leaf's
+//! What must never change one bit of a picture: skipping, the traversal of the octree, the leaf's
 //! edge, the work-group's size, how many rays a work-item follows side by side, whether voxels are in a
 //! buffer or an image.
 
@@ -112,7 +112,7 @@ fn total(counter: Option<&[u32]>) -> u64 {
     counter.into_iter().flatten().map(|&n| u64::from(n)).sum()
 }
 
-/// Renders every picture with both filters, by steps and exactly where it can be, under one way of
+/// Renders every picture with both filters, by steps and exactly where it can be, under one method of
 /// skipping; in a fixed order.
 fn all_frames(
     renderer: &mut Renderer,
@@ -170,7 +170,7 @@ fn skipping_and_traversal_never_change_a_bit() {
                     assert_eq!(total(frame.plane(NODES)), 0);
                 }
             }
-            let mut nodes_told = Vec::new();
+            let mut node_counts = Vec::new();
             for traverse in Traverse::ALL {
                 let skipped = all_frames(&mut renderer, &volume, true, traverse);
                 for ((what, whole), (_, skipped)) in whole.iter().zip(&skipped) {
@@ -186,12 +186,12 @@ fn skipping_and_traversal_never_change_a_bit() {
                         );
                     }
                 }
-                nodes_told.push(total(skipped[0].1.plane(NODES)));
+                node_counts.push(total(skipped[0].1.plane(NODES)));
             }
-            // The counters tell the traversals apart, where there are nodes to skip.
-            nodes_told.sort_unstable();
-            nodes_told.dedup();
-            let all = nodes_told.len() == Traverse::ALL.len();
+            // The counters distinguish the traversals, where there are nodes to skip.
+            node_counts.sort_unstable();
+            node_counts.dedup();
+            let all = node_counts.len() == Traverse::ALL.len();
             assert!(all || name != "tubes", "{name} leaf {leaf}");
         }
     }
@@ -312,7 +312,7 @@ fn any_work_group_gives_the_same_bytes() {
     }
 }
 
-/// Fixed steps and the exact way of each picture, and the adaptive rule of the unshaded emission.
+/// Fixed steps and the exact cast of each picture, and the adaptive rule of the unshaded emission.
 fn cast_by_each_method(picture: Picture) -> Vec<(Picture, SamplingMethod)> {
     let other = match &picture {
         Picture::Emission(emission) => emission.phong.is_none().then(|| {
@@ -328,8 +328,8 @@ fn cast_by_each_method(picture: Picture) -> Vec<(Picture, SamplingMethod)> {
     casts
 }
 
-/// Volumes of all types, and the modes in which each is looked at. What reads voxels differs with their
-/// type, all else is the same for all types: of tubes alone all ways to follow rays.
+/// Volumes of all types, and the modes in which each is shown. What reads voxels differs with their
+/// type, all else is the same for all types: tubes alone are shown by all samplings.
 fn of_all_types() -> Vec<(Volume, Vec<&'static str>)> {
     let signed = volume_of([23, 18, 31], |x, y, z| (hash(x, y, z) * 6e4 - 3e4) as i16);
     let wide = volume_of([18, 27, 22], |x, y, z| (hash(y, z, x) * 6.5e4) as u16);

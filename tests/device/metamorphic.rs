@@ -124,7 +124,7 @@ fn volume_and_camera_turned_together_give_the_same_picture() {
             g.spacing_mm(),
         );
         let turned = volume_with(DIMS, turned.unwrap(), lettered);
-        let look = |turn: DQuat| {
+        let turned_camera = |turn: DQuat| {
             let eye = turn * camera.eye_world();
             Camera::look_at(
                 eye,
@@ -134,7 +134,7 @@ fn volume_and_camera_turned_together_give_the_same_picture() {
             )
             .unwrap()
         };
-        let frames = on_device(&device, &turned, &scenes(&turned, look(turn), 1.0));
+        let frames = on_device(&device, &turned, &scenes(&turned, turned_camera(turn), 1.0));
         // Normals turn along; color and depth stay.
         let back = DMat3::from_quat(turn).transpose();
         let mut upright = frames.clone();
@@ -152,7 +152,11 @@ fn volume_and_camera_turned_together_give_the_same_picture() {
             "normals not turned back"
         );
         let slightly = turn * DQuat::from_rotation_z(0.02);
-        let frames = on_device(&device, &turned, &scenes(&turned, look(slightly), 1.0));
+        let frames = on_device(
+            &device,
+            &turned,
+            &scenes(&turned, turned_camera(slightly), 1.0),
+        );
         assert!(
             !differences(&expected, &frames, &volume).is_empty(),
             "1.1 degrees are not seen"
@@ -175,7 +179,7 @@ fn twice_the_spacing_from_twice_as_far_is_the_same_picture() {
     let far = Camera::look_at(eye, eye + camera.forward(), camera.up(), camera.lens()).unwrap();
     let near_frames = on_device(&device, &volume, &scenes(&volume, camera, 1.0));
     let far_frames = on_device(&device, &doubled, &scenes(&doubled, far, 2.0));
-    let unit_kept = on_device(&device, &doubled, &scenes(&doubled, far, 1.0));
+    let unit_unscaled = on_device(&device, &doubled, &scenes(&doubled, far, 1.0));
     for (near, far) in near_frames.iter().zip(&far_frames) {
         assert!(AlphaMax.of(near, far, &volume) < 1e-6);
         assert!(ColorMean.of(near, far, &volume) < 1e-6);
@@ -189,7 +193,7 @@ fn twice_the_spacing_from_twice_as_far_is_the_same_picture() {
             assert!((b / a - 2.0).abs() < 1e-5, "{a} and {b}");
         }
     }
-    assert!(AlphaMax.of(&near_frames[2], &unit_kept[2], &volume) > 0.05);
+    assert!(AlphaMax.of(&near_frames[2], &unit_unscaled[2], &volume) > 0.05);
 }
 
 /// Where a world point is in the picture, in pixels.

@@ -123,7 +123,7 @@ fn rays_find_the_same_in_whatever_company() {
 }
 
 #[test]
-fn a_ray_is_looked_at_from_its_least_t_to_its_greatest() {
+fn a_ray_is_cast_from_its_smallest_t_to_its_greatest() {
     let Some(device) = common::device() else {
         return;
     };
@@ -143,9 +143,10 @@ fn a_ray_is_looked_at_from_its_least_t_to_its_greatest() {
         let before = cast(&mut caster, &target, &with(|t| [0.0, 0.99 * t]));
         assert!(before.iter().all(|one| one.kind == Kind::Nothing));
         let beyond = cast(&mut caster, &target, &with(|t| [0.0, 1.01 * t]));
-        // Where a ray ends within a cell its cubic has other coefficients: the root is off by their rounding.
+        // Where a ray ends within a cell its cubic has other coefficients, rounded otherwise: near a double root the
+        // root moves by the square root of that.
         for (one, hit) in beyond.iter().zip(&hits) {
-            let close = (one.t - hit.t).abs() <= 1e-5 * (1.0 + hit.t);
+            let close = (one.t - hit.t).abs() <= 3e-4 * (1.0 + hit.t);
             assert!(close && one.kind == hit.kind, "{one:?} {hit:?}");
         }
         ended += before.len();

@@ -1,5 +1,5 @@
 //! The refiners against closed-form roots: rows of voxels whose profile crosses the iso value once,
-//! looked at along the rows.
+//! compared along the rows.
 
 use crate::common;
 
@@ -99,10 +99,9 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
 }
 
 fn worst(errors: &[f64]) -> f64 {
-    errors.iter().fold(
-        0.0,
-        |most, &e| if e > most || e.is_nan() { e } else { most },
-    )
+    errors
+        .iter()
+        .fold(0.0, |max, &e| if e > max || e.is_nan() { e } else { max })
 }
 
 fn mean(errors: &[f64]) -> f64 {
@@ -110,7 +109,7 @@ fn mean(errors: &[f64]) -> f64 {
 }
 
 #[test]
-fn bisection_and_regula_falsi_keep_their_bound() {
+fn bisection_and_regula_falsi_stay_within_their_bound() {
     let Some(device) = common::device() else {
         return;
     };

@@ -13,7 +13,7 @@ use glam::DVec3;
 const DIMS: [u64; 3] = [17, 15, 13];
 const STEP_MM: f64 = 0.75;
 
-/// Linear, so that the mean of samples on a straight way is the value in its middle.
+/// Linear, so that the mean of samples on a straight path is the value in its middle.
 fn linear(p: DVec3) -> f64 {
     5.0 + p.dot(DVec3::new(1.0, -0.5, 2.0))
 }
@@ -34,14 +34,14 @@ fn scene(volume: &Volume, toward_eye: DVec3) -> Scene {
 }
 
 /// Where a pixel's ray enters and leaves the volume, in lengths of its direction.
-fn way(scene: &Scene, pixel: usize) -> (DVec3, DVec3, f64, f64) {
+fn path(scene: &Scene, pixel: usize) -> (DVec3, DVec3, f64, f64) {
     let width = scene.size.width() as usize;
     let (x, y) = ((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
     let ray = scene.camera.ray(scene.size, x, y);
     let (origin, dir) = (ray.origin_world, ray.dir_world);
     let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {
-        let to = |wall: f64| (wall - origin[axis]) / dir[axis];
+        let to = |face: f64| (face - origin[axis]) / dir[axis];
         let (a, b) = (to(0.0), to((DIMS[axis] - 1) as f64));
         enter = enter.max(a.min(b));
         exit = exit.min(a.max(b));
@@ -53,10 +53,10 @@ fn way(scene: &Scene, pixel: usize) -> (DVec3, DVec3, f64, f64) {
 fn wrong_pixels(sampled: &Sampled, scene: &Scene) -> usize {
     (0..scene.size.pixels())
         .filter(|&pixel| {
-            let (origin, dir, enter, exit) = way(scene, pixel);
+            let (origin, dir, enter, exit) = path(scene, pixel);
             let steps = ((exit - enter) / STEP_MM).max(0.0);
             let count = sampled.counts[pixel];
-            // Where the way is a whole number of steps rounding decides on the last.
+            // Where the path is a whole number of steps rounding decides on the last.
             let right_count = (f64::from(count) - steps.floor()).abs() < 0.5
                 || (steps - steps.round()).abs() < 1e-4
                     && (f64::from(count) - steps.round()).abs() < 1.5;
@@ -88,10 +88,10 @@ fn every_ray_is_sampled_from_end_to_end() {
         assert_eq!(one.means, sampled[0].means);
         assert_eq!(one.counts, sampled[0].counts);
     }
-    let most = (DIMS.iter().sum::<u64>() as f64 / STEP_MM) as u32;
+    let max = (DIMS.iter().sum::<u64>() as f64 / STEP_MM) as u32;
     let hit = sampled[0].counts.iter().filter(|&&n| n > 0).count();
     assert!(hit > 200 && hit < here.size.pixels(), "{hit}");
-    assert!(sampled[0].counts.iter().all(|&n| n < most));
+    assert!(sampled[0].counts.iter().all(|&n| n < max));
     assert_eq!(
         sampled[0].samples(),
         sampled[0].counts.iter().map(|&n| u64::from(n)).sum::<u64>()

@@ -28,7 +28,7 @@ fn mist_before_fog(method: QuadratureMethod, termination: f64) -> Picture {
     })
 }
 
-fn most_lost(whole: &Frame, ended: &Frame) -> f64 {
+fn max_lost(whole: &Frame, ended: &Frame) -> f64 {
     let pairs = whole
         .color
         .iter()
@@ -62,9 +62,9 @@ fn what_is_lost_stays_below_the_bound_and_samples_are_saved() {
         let mut samples_before = 0;
         for termination in [0.5, 0.8, 0.95, 0.999] {
             let (ended, samples) = render(method, termination);
-            let lost = most_lost(&whole, &ended);
+            let lost = max_lost(&whole, &ended);
             if method == QuadratureMethod::Adaptive {
-                // Its own bound holds for what is lost at the end too, whatever is asked for.
+                // Its own bound holds for what is lost at the end too, whatever is requested.
                 assert!(
                     lost <= Quadrature::DEFAULT_BOUND,
                     "{method} {termination}: {lost}"

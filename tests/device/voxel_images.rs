@@ -150,9 +150,9 @@ fn beyond_eight_bits(volume: &Volume, samples: &Samples) -> usize {
     pairs
         .filter(|&(&p, &value)| {
             let (corners, _) = corners(volume, p);
-            let most = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            let least = corners.into_iter().fold(f64::INFINITY, f64::min);
-            let bound = 3.0 / 256.0 * (most - least) + 1e-4 * range;
+            let max = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let min = corners.into_iter().fold(f64::INFINITY, f64::min);
+            let bound = 3.0 / 256.0 * (max - min) + 1e-4 * range;
             (value - trilinear(volume, p, None)).abs() > bound
         })
         .count()
@@ -223,7 +223,7 @@ fn u16_is_filtered_within_eight_bits() {
 
 #[test]
 fn i16_is_filtered_within_eight_bits() {
-    // Its least value too, which a signed texel would not tell from the next.
+    // Its smallest value too, which a signed texel would not distinguish from the next.
     filters_within_eight_bits(|n| (n * 65535.0 - 32768.0) as i16);
 }
 

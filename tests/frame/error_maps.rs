@@ -230,7 +230,7 @@ fn equal_pictures_are_grey_and_empty_ones_show_nothing() {
     assert_eq!(decoded(&empty.png().unwrap()).2, [[119, 119, 119]; 2]);
 }
 
-/// What rounding leaves is not shown unless it is asked for.
+/// What rounding leaves is not shown unless it is requested.
 #[test]
 fn rounding_does_not_fill_a_map() {
     let reference = with_depth(&[10.0; 3]);

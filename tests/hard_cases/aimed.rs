@@ -32,7 +32,10 @@ fn no_aimed_ray_is_lost() {
     let total = report.total();
     assert_eq!(total.rays, count());
     assert!(total.hits * 5 > total.rays, "few rays hit");
-    assert!(total.borderline * 20 < total.rays, "most rays are nobody's");
+    assert!(
+        total.borderline * 20 < total.rays,
+        "most rays are borderline"
+    );
     assert!(total.wrong() == 0, "{CAUGHT}: {report}");
 }
 
@@ -55,10 +58,10 @@ fn answered(
 }
 
 /// Rays of which a hundred million were answered wrong, at targets of seed 4: two pass by the volume's
-/// own corner at 2e-6 voxel, and one enters so near to the wall between two cells that single precision
+/// own corner at 2e-6 voxel, and one enters so near to the face between two cells that single precision
 /// puts it in the next, which is inside.
 #[test]
-fn rays_a_hair_beside_a_corner_are_told_apart() {
+fn rays_a_hair_beside_a_corner_are_distinguished() {
     let passing = [
         (
             911,
@@ -91,11 +94,11 @@ fn rays_a_hair_beside_a_corner_are_told_apart() {
     let (report, found) = answered(&target, &[ray]).unwrap();
     let total = report.total();
     assert_eq!((total.hits, total.borderline), (1, 0), "{CAUGHT}: {report}");
-    let met = found[0];
-    let right = total.wrong() == 0 && met.kind == Kind::Surface && met.t == 47.0;
+    let hit = found[0];
+    let right = total.wrong() == 0 && hit.kind == Kind::Surface && hit.t == 47.0;
     assert!(
-        right && met.certificate != Certificate::Miss,
-        "{CAUGHT}: {met:?}"
+        right && hit.certificate != Certificate::Miss,
+        "{CAUGHT}: {hit:?}"
     );
 }
 
@@ -140,14 +143,14 @@ fn a_ray_meets_a_solid_volume_exactly_when_it_does() {
         return;
     };
     let total = report.total();
-    let caps = found.iter().filter(|met| met.kind == Kind::Cap).count();
+    let caps = found.iter().filter(|hit| hit.kind == Kind::Cap).count();
     assert!((1000..3500).contains(&caps), "{caps}");
     // Not even borderline: the reference's own answer to every ray.
     let exact = total.wrong() == 0 && total.borderline == 0 && total.hits == caps as u64;
     assert!(exact, "{CAUGHT}: {report}");
 }
 
-/// Rays that enter by a face within a hair of the wall between two cells, one of which is solid.
+/// Rays that enter by a face within a hair of the face between two cells, one of which is solid.
 #[test]
 fn a_ray_begins_in_the_cell_in_which_it_enters() {
     // Inside from x = 2 on, and there on the iso value itself.
@@ -161,7 +164,7 @@ fn a_ray_begins_in_the_cell_in_which_it_enters() {
         // By the face y = 3 at x = 2 - 2^-24, which single precision takes for 2, and at 2 + 2^-24.
         enters(0.5 - (-24_f32).exp2(), 0.25),
         enters(0.5 + (-24_f32).exp2(), 0.25),
-        // Beside the wall, in it, and from it on.
+        // Beside the face, in it, and from it on.
         enters(2.0 - (-23_f32).exp2(), 0.0),
         enters(2.0, 0.0),
         enters(3.5, -0.25),
@@ -169,7 +172,7 @@ fn a_ray_begins_in_the_cell_in_which_it_enters() {
     let Some((report, found)) = answered(&target, &rays) else {
         return;
     };
-    let kinds: Vec<Kind> = found.iter().map(|met| met.kind).collect();
+    let kinds: Vec<Kind> = found.iter().map(|hit| hit.kind).collect();
     let right = [
         Kind::Surface,
         Kind::Nothing,
@@ -194,9 +197,12 @@ fn a_cast_that_begins_by_single_precision_is_caught() {
     );
     let no_pairs = ("lib/ray/interval.clh", "if (!ANY(unsure))", "if (true)");
     for (test, (file, right, wrong)) in [
-        ("aimed::rays_a_hair_beside_a_corner_are_told_apart", by_high),
         (
-            "aimed::rays_a_hair_beside_a_corner_are_told_apart",
+            "aimed::rays_a_hair_beside_a_corner_are_distinguished",
+            by_high,
+        ),
+        (
+            "aimed::rays_a_hair_beside_a_corner_are_distinguished",
             no_pairs,
         ),
         (
@@ -243,7 +249,7 @@ fn a_cast_that_loses_rays_is_caught() {
     }
 }
 
-/// Rays of any numbers at all: every loop ends, and what is told is a hit or none.
+/// Rays of any numbers at all: every loop ends, and what is reported is a hit or none.
 #[test]
 fn hostile_rays_end() {
     let Some(device) = common::device() else {

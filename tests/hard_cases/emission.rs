@@ -107,7 +107,7 @@ fn homogeneous() {
 
 #[test]
 fn slab() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, -8.0 * 0.7_f64.ln() + 4.0 * rising(0.3))
     }
     // The nearer point's opacity between two points.
@@ -118,12 +118,12 @@ fn slab() {
             "    f = f < 0.5f ? FLOATS(0.0f) : FLOATS(1.0f);\n    ColorOpacity seen;\n",
         )],
     );
-    check("emission::slab", "slab", truth, &[not_between]);
+    check("emission::slab", "slab", expected, &[not_between]);
 }
 
 #[test]
 fn ramp() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, 64.0 * rising(0.95) / 40.0)
     }
     // Opacity for absorption: right for the faintest alone.
@@ -131,7 +131,7 @@ fn ramp() {
         "lib/light/transfer.clh",
         &[("depth_of_opacity(clear)", "clear")],
     );
-    check("emission::ramp", "ramp", truth, &[faint_alone]);
+    check("emission::ramp", "ramp", expected, &[faint_alone]);
 }
 
 #[test]
@@ -151,10 +151,10 @@ fn gaussian() {
 
 #[test]
 fn tf_spike() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, 0.1 * rising(0.9))
     }
-    // Whole intervals between the values of two samples left out; panels judged by their points
+    // Whole intervals between the values of two samples left out; panels evaluated by their points
     // alone, whatever lies between.
     let left_out = kernel(
         "lib/light/preintegrated.clh",
@@ -170,7 +170,7 @@ fn tf_spike() {
     check(
         "emission::tf_spike",
         "tf-spike",
-        truth,
+        expected,
         &[left_out, points_alone],
     );
 }
@@ -194,13 +194,13 @@ fn tf_stairs() {
 
 #[test]
 fn tf_outside() {
-    fn truth(seen: &Seen) -> Vec<String> {
-        let most = (0..seen.pixels())
+    fn expected(seen: &Seen) -> Vec<String> {
+        let max = (0..seen.pixels())
             .map(|pixel| seen.alpha(pixel))
             .fold(0.0, f64::max);
         match seen.name {
-            "transparent" | "clear-point" | "above" => near("the largest opacity", most, 0.0, 0.0),
-            "opaque" => near("the largest opacity", most, 1.0, 1e-6),
+            "transparent" | "clear-point" | "above" => near("the largest opacity", max, 0.0, 0.0),
+            "opaque" => near("the largest opacity", max, 1.0, 1e-6),
             // Of opacity 0.2 each 4 mm.
             _ => {
                 let middle = seen.middle();
@@ -214,12 +214,17 @@ fn tf_outside() {
             }
         }
     }
-    check("emission::tf_outside", "tf-outside", truth, &[OTHER_LENGTH]);
+    check(
+        "emission::tf_outside",
+        "tf-outside",
+        expected,
+        &[OTHER_LENGTH],
+    );
 }
 
 #[test]
 fn opaque_step() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let mut lines = Vec::new();
         for pixel in 0..seen.pixels() {
             // But for rays that only touch the volume.
@@ -239,12 +244,17 @@ fn opaque_step() {
             "return opacity == 1.0f ? FLOATS(INFINITY) : opacity > 0.0f ? absorption",
         )],
     );
-    check("emission::opaque_step", "opaque-step", truth, &[infinite]);
+    check(
+        "emission::opaque_step",
+        "opaque-step",
+        expected,
+        &[infinite],
+    );
 }
 
 #[test]
 fn faint_4096() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let expected = opacity(-4096.0 * (-1e-6_f64).ln_1p());
         near(
             "the opacity over the exact one",
@@ -261,12 +271,17 @@ fn faint_4096() {
             "depth_of_opacity(1.0f - (1.0f - clear))",
         )],
     );
-    check("emission::faint_4096", "faint-4096", truth, &[lost_digits]);
+    check(
+        "emission::faint_4096",
+        "faint-4096",
+        expected,
+        &[lost_digits],
+    );
 }
 
 #[test]
 fn thin_bright_sheet() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, 110.0 / 255.0 * rising(0.5))
     }
     // Leaves that do not know the voxels that they share with the next leaf: the sheet is the last
@@ -282,14 +297,14 @@ fn thin_bright_sheet() {
     check(
         "emission::thin_bright_sheet",
         "thin-bright-sheet",
-        truth,
+        expected,
         &[unshared],
     );
 }
 
 #[test]
 fn false_homogeneous() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         along_x(seen, -14.4 * 0.5_f64.ln() + 3.2 * rising(0.5))
     }
     // The rule on value ranges, at a third of the volume's range: any leaf passes for homogeneous.
@@ -305,7 +320,7 @@ fn false_homogeneous() {
     check(
         "emission::false_homogeneous",
         "false-homogeneous",
-        truth,
+        expected,
         &[by_range],
     );
 }

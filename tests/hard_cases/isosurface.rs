@@ -29,7 +29,7 @@ pub const CASES: &[&str] = &[
     "white-noise",
 ];
 
-/// The turning points of the cubic forgotten: only the ends of a cell are looked at.
+/// The turning points of the cubic forgotten: only the ends of a cell are tested.
 const NO_TURNS: Mutant = kernel(
     "lib/volume/cubic.clh",
     &[(
@@ -77,7 +77,7 @@ const NO_ROOT: Mutant = kernel(
     ],
 );
 
-/// A beam taken for the ray on its lower side.
+/// A packet taken for the ray on its lower side.
 const LOWEST_RAY: Mutant = kernel(
     "lib/skip/packet.clh",
     &[(
@@ -101,7 +101,7 @@ fn depth_of(seen: &Seen, point: DVec3) -> f64 {
 
 #[test]
 fn tangent() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         match seen.name {
             "diagonal-iso149.99-open" => {
                 let s = 0.5 - (0.25_f64 - 149.99 / 600.0).sqrt();
@@ -112,12 +112,12 @@ fn tangent() {
             _ => is("something is hit", seen.hits() > 0),
         }
     }
-    check("isosurface::tangent", "tangent", truth, &[NO_TURNS]);
+    check("isosurface::tangent", "tangent", expected, &[NO_TURNS]);
 }
 
 #[test]
 fn three_roots() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         if !seen.name.starts_with("diagonal") {
             return is("something is hit", seen.hits() > 0);
         }
@@ -135,14 +135,14 @@ fn three_roots() {
     check(
         "isosurface::three_roots",
         "three-roots",
-        truth,
+        expected,
         &[last_root],
     );
 }
 
 #[test]
 fn two_roots_in_a_step() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let through = seen.name.starts_with("oblique") || seen.hits() == seen.pixels();
         let mut lines = is("the layer has no hole", through);
         let off = 5.0 / 255.0;
@@ -157,7 +157,7 @@ fn two_roots_in_a_step() {
     check(
         "isosurface::two_roots_in_a_step",
         "two-roots-in-a-step",
-        truth,
+        expected,
         &[Mutant::Scene(fixed_steps)],
     );
 }
@@ -178,7 +178,7 @@ const ABOVE_ONLY: Mutant = kernel(
 
 #[test]
 fn plateau() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         // The block of 100 begins at y = 8 as seen from +y.
         if seen.name == "front-iso100" {
             // Its neighbours are 20: 100 is reached at its own voxels.
@@ -191,12 +191,12 @@ fn plateau() {
             seen.name.contains("199") || seen.hits() > 0,
         )
     }
-    check("isosurface::plateau", "plateau", truth, &[ABOVE_ONLY]);
+    check("isosurface::plateau", "plateau", expected, &[ABOVE_ONLY]);
 }
 
 #[test]
 fn iso_at_extremes() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let iso = seen.name.split_once("iso").map_or("", |(_, rest)| rest);
         let open = iso.ends_with("-open");
         let iso: f64 = iso.trim_end_matches("-open").parse().unwrap();
@@ -213,7 +213,7 @@ fn iso_at_extremes() {
     check(
         "isosurface::iso_at_extremes",
         "iso-at-extremes",
-        truth,
+        expected,
         &[never_above],
     );
 }
@@ -225,7 +225,7 @@ fn saddle() {
 
 #[test]
 fn thin_vessels() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         is(
             "a twentieth of the pixels hits",
             seen.hits() > seen.pixels() / 20,
@@ -234,14 +234,14 @@ fn thin_vessels() {
     check(
         "isosurface::thin_vessels",
         "thin-vessels",
-        truth,
+        expected,
         &[NO_TURNS],
     );
 }
 
 #[test]
 fn touching_vessels() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         if !seen.name.starts_with("front") {
             return Vec::new();
         }
@@ -256,14 +256,14 @@ fn touching_vessels() {
     check(
         "isosurface::touching_vessels",
         "touching-vessels",
-        truth,
+        expected,
         &[NO_ROOT],
     );
 }
 
 #[test]
 fn one_bright_voxel() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         if seen.name != "x-iso250-open" {
             return Vec::new();
         }
@@ -273,14 +273,14 @@ fn one_bright_voxel() {
     check(
         "isosurface::one_bright_voxel",
         "one-bright-voxel",
-        truth,
+        expected,
         &[SEVEN_CORNERS],
     );
 }
 
 #[test]
 fn stenosis() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         if !seen.name.starts_with("front") {
             return Vec::new();
         }
@@ -292,12 +292,17 @@ fn stenosis() {
         ));
         lines
     }
-    check("isosurface::stenosis", "stenosis", truth, &[SEVEN_CORNERS]);
+    check(
+        "isosurface::stenosis",
+        "stenosis",
+        expected,
+        &[SEVEN_CORNERS],
+    );
 }
 
 #[test]
 fn sheet() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let mut lines = Vec::new();
         // Where the ray crosses the sheet's plane well inside the volume, it hits.
         for pixel in 0..seen.pixels() {
@@ -315,14 +320,14 @@ fn sheet() {
     check(
         "isosurface::sheet",
         "sheet",
-        truth,
+        expected,
         &[Mutant::Octree(without_border), LOWEST_RAY],
     );
 }
 
 #[test]
 fn step_edge() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let Some(iso) = seen.name.strip_prefix("x-iso") else {
             return Vec::new();
         };
@@ -330,7 +335,7 @@ fn step_edge() {
         let depth = depth_of(seen, DVec3::new(7.0 + iso / 255.0, 4.0, 4.0));
         near("the depth", seen.depth_mm(seen.middle()), depth, 1e-3)
     }
-    check("isosurface::step_edge", "step-edge", truth, &[NO_ROOT]);
+    check("isosurface::step_edge", "step-edge", expected, &[NO_ROOT]);
 }
 
 /// The volume as nodes see it that forget their border voxels: each leaf has the range of the voxels that
@@ -369,7 +374,7 @@ fn without_border(volume: &Volume) -> Volume {
 
 #[test]
 fn corner_voxels() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         if !seen.name.contains("mip") {
             return Vec::new();
         }
@@ -381,18 +386,18 @@ fn corner_voxels() {
     check(
         "isosurface::corner_voxels",
         "corner-voxels",
-        truth,
+        expected,
         &[Mutant::Octree(without_border), LOWEST_RAY],
     );
 }
 
 #[test]
 fn zero_gradient() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let mut lines = is("every ray hits", seen.hits() == seen.pixels());
         for pixel in 0..seen.pixels() {
             let off = seen.normal(pixel).distance(-seen.ray(pixel).dir_world);
-            lines.extend(near("the normal's way from the eye", off, 0.0, 1e-3));
+            lines.extend(near("the normal's distance from the eye", off, 0.0, 1e-3));
         }
         lines.truncate(3);
         lines
@@ -407,14 +412,14 @@ fn zero_gradient() {
     check(
         "isosurface::zero_gradient",
         "zero-gradient",
-        truth,
+        expected,
         &[no_normal],
     );
 }
 
 #[test]
 fn mirrored_normals() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let mut worst: f64 = 0.0;
         let mut farthest: f64 = 0.0;
         for pixel in (0..seen.pixels()).filter(|&pixel| seen.kind(pixel) == 1) {
@@ -435,7 +440,7 @@ fn mirrored_normals() {
     check(
         "isosurface::mirrored_normals",
         "mirrored-normals",
-        truth,
+        expected,
         &[index_space],
     );
 }
@@ -462,13 +467,13 @@ fn marschner_lobb_32() {
 
 #[test]
 fn white_noise() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         is("most rays hit", seen.hits() > seen.pixels() / 4)
     }
     check(
         "isosurface::white_noise",
         "white-noise",
-        truth,
+        expected,
         &[TEXTURE_WEIGHTS],
     );
 }

@@ -10,7 +10,7 @@ pub const WRONG_PIXELS: usize = 0;
 /// Of surfaces, the share of the hits whose depth may be off by more than 1e-3 voxel.
 pub const DISPLACED: f64 = 1e-3;
 
-/// Of projections. The values: the share of the range that single precision cannot tell apart.
+/// Of projections. The values: the share of the range that single precision cannot resolve.
 pub const PROJECTED: [(Figure, f64); 2] = [(Figure::Kind, 0.0), (Figure::ValueMax, 2e-6)];
 
 /// Of emissions, premultiplied linear light and opacity: the adaptive rule's own bound, of others,

@@ -57,7 +57,7 @@ fn sizes() {
 
 #[test]
 fn constant() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let caps = (0..seen.pixels())
             .filter(|&pixel| seen.kind(pixel) == 2)
             .count();
@@ -68,7 +68,7 @@ fn constant() {
         }
     }
     let never_above = kernel("lib/find/crossing.clh", &NEVER_ABOVE);
-    check("volumes::constant", "constant", truth, &[never_above]);
+    check("volumes::constant", "constant", expected, &[never_above]);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn files_of_all_types_are_read_as_they_should_be() {
 
 #[test]
 fn non_finite() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let lowest = seen.volume.range().min;
         let mut lines = is("17 voxels are counted", seen.volume.non_finite() == 17);
         lines.extend(is("they are the smallest finite value", lowest < -40.0));
@@ -138,7 +138,7 @@ fn non_finite() {
         });
         with_voxels(volume, voxels.collect())
     });
-    check("volumes::non_finite", "non-finite", truth, &[as_zero]);
+    check("volumes::non_finite", "non-finite", expected, &[as_zero]);
 }
 
 /// A surface, a maximum and an emission from the surface's camera.
@@ -178,7 +178,7 @@ const SAME: [&[(Figure, f64)]; 3] = [
 ];
 
 /// All 48 give the pictures of the first: the surface always, the others, built by the same rays, for
-/// two flips an order of axes. With a geometry that does not tell how they are stored these do not.
+/// two flips an order of axes. With a geometry that does not say how they are stored these do not.
 #[test]
 fn orientations() {
     let Some(device) = common::device() else {
@@ -189,16 +189,16 @@ fn orientations() {
     let first = case.volume(0).unwrap().volume;
     let (_, surface) = &resolved(case, &first)[0];
     let scenes = pictures(surface);
-    let frames = |volume: &Volume, kept: usize| -> Vec<Frame> {
+    let frames = |volume: &Volume, count: usize| -> Vec<Frame> {
         let octree = Octree::build(volume, Leaf::default(), &Silent).unwrap();
         let mut renderer = Renderer::new(&device, volume, &octree, Options::default()).unwrap();
         let frame = |scene| renderer.render(scene, Wanted::ALL).unwrap().frame;
-        scenes[..kept].iter().map(frame).collect()
+        scenes[..count].iter().map(frame).collect()
     };
     let expected = frames(&first, 3);
     // The first figure above its limit, of each picture.
-    let differs = |volume: &Volume, kept: usize| -> Vec<Option<Figure>> {
-        let frames = frames(volume, kept);
+    let differs = |volume: &Volume, count: usize| -> Vec<Option<Figure>> {
+        let frames = frames(volume, count);
         let pairs = expected.iter().zip(&frames).zip(SAME);
         let first_above = |((expected, frame), same): ((&Frame, &Frame), &[(Figure, f64)])| {
             let above =
@@ -209,14 +209,14 @@ fn orientations() {
     };
     for member in 0..case.count() {
         let stored = case.volume(member).unwrap().volume;
-        let kept = if [1, 6].contains(&(member % 8)) { 3 } else { 1 };
-        let found = differs(&stored, kept);
+        let count = if [1, 6].contains(&(member % 8)) { 3 } else { 1 };
+        let found = differs(&stored, count);
         assert!(
             found.iter().all(Option::is_none),
             "orientation {:?}: {found:?}",
             orientation_of(member)
         );
-        if kept == 3 {
+        if count == 3 {
             let untold = Geometry::new(
                 DVec3::new(3.0, -4.0, 5.0),
                 DMat3::IDENTITY,
@@ -232,7 +232,7 @@ fn orientations() {
                 Rescale::IDENTITY,
                 NonFinite::Refuse,
             );
-            let found = differs(&untold.unwrap(), kept);
+            let found = differs(&untold.unwrap(), count);
             assert!(
                 found.iter().all(Option::is_some),
                 "orientation {member} untold: {found:?}"
@@ -282,7 +282,7 @@ typedef ulong16 Index;
 
 #[test]
 fn clip_planes() {
-    fn truth(seen: &Seen) -> Vec<String> {
+    fn expected(seen: &Seen) -> Vec<String> {
         let hits = seen.hits();
         if seen.name.starts_with("nothing-left") {
             return is("nothing is left", hits == 0);
@@ -326,7 +326,7 @@ fn clip_planes() {
     check(
         "volumes::clip_planes",
         "clip-planes",
-        truth,
+        expected,
         &[along, first],
     );
 }

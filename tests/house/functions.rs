@@ -188,7 +188,7 @@ fn a_reason_above_a_function_excuses_it_and_an_empty_one_does_not() {
     assert_eq!(faults_of(&made_up(reason, 90, 9)).len(), 1);
     let reason = "// many parameters: a foreign interface.\n";
     assert_eq!(faults_of(&made_up(reason, 9, 9)), [] as [&str; 0]);
-    // A reason of another function is none.
+    // A reason of another function does not count.
     let text = made_up("// long: a table.\n", 90, 3) + "\n" + &made_up("", 90, 3);
     assert_eq!(faults_of(&text).len(), 1);
 }

@@ -28,7 +28,7 @@ fn driver() -> Option<PathBuf> {
         .find(|driver| driver.exists())
 }
 
-/// A folder for one test, with the file that tells the OpenCL loader of oclgrind and nothing else.
+/// A folder for one test, with the file that makes the OpenCL loader find only oclgrind.
 struct Under {
     folder: tempfile::TempDir,
     kernels: Option<PathBuf>,
@@ -102,7 +102,7 @@ impl Under {
             .env("OCL_ICD_VENDORS", self.path("vendors"))
             .env_remove("OCL_ICD_FILENAMES")
             .env("OCLGRIND_LOG", log)
-            // It tells of lines of the source.
+            // It names lines of the source.
             .env("ANGIORAY_KERNEL_CACHE", "off")
             .env("OCLGRIND_DATA_RACES", "1")
             .env("OCLGRIND_CHECK_API", "1")
@@ -241,7 +241,7 @@ fn a_write_by_two_work_items_is_reported() {
 }
 
 /// In a process of its own: rays aimed at volumes of every type of voxel that they are made of, and
-/// rays of numbers that are none.
+/// rays of NaN.
 #[test]
 fn aimed_rays_under_oclgrind() {
     if std::env::var_os(UNDER).is_none() {

@@ -3,7 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-mod kept_kernels;
+mod cached_kernels;
 mod kernel_abi;
 mod kernel_functions;
 mod kernel_lint;

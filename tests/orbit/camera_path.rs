@@ -75,7 +75,7 @@ fn an_orbit_closes_without_a_repeated_frame() {
             for (degrees, frames) in [(360.0, 7), (-720.0, 12), (360.0, 1)] {
                 let orbit = orbit(view, axis, degrees, frames);
                 let first = orbit.at(0);
-                // Exactly: whoever renders frame N gets the bytes of frame 0.
+                // Exactly: rendering frame N gives the bytes of frame 0.
                 let closing = orbit.at(frames);
                 assert_eq!(closing.scene, first.scene, "{view} {axis}");
                 assert_eq!(closing.options, first.options, "{view} {axis}");

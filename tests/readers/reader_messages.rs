@@ -160,7 +160,7 @@ fn progress_counts_the_bytes_of_the_volume() {
 }
 
 #[test]
-fn an_extreme_calibration_is_kept_or_refused() {
+fn an_extreme_calibration_is_applied_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("extreme.nii");
     let mut bytes = fs::read(fixture("slope_falling.nii")).unwrap();

@@ -1,7 +1,7 @@
 //! Volumes, scenes and rays of the tests, and a field evaluated without the renderer's code.
 
 use angioray::extent::{Dims, ImageSize};
-use angioray::reference::{Sight, Tracer};
+use angioray::reference::{RayResult, Tracer};
 use angioray::scene::{
     Camera, Emission, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Ray, Refine, Rgb,
     Sampling, Scene, Termination, Tone, TransferFunction, Window,
@@ -102,18 +102,18 @@ pub fn dvr(transfer: TransferFunction, phong: Option<Phong>) -> Picture {
     })
 }
 
-pub fn cast_scene(volume: &Volume, scene: &Scene, origin: DVec3, toward: DVec3) -> Sight {
+pub fn cast_scene(volume: &Volume, scene: &Scene, origin: DVec3, toward: DVec3) -> RayResult {
     Tracer::new(volume, scene).unwrap().cast(Ray {
         origin_world: origin,
         dir_world: (toward - origin).normalize(),
     })
 }
 
-pub fn cast(volume: &Volume, picture: Picture, origin: DVec3, toward: DVec3) -> Sight {
+pub fn cast(volume: &Volume, picture: Picture, origin: DVec3, toward: DVec3) -> RayResult {
     cast_scene(volume, &scene(picture), origin, toward)
 }
 
-pub fn cast_nearest(volume: &Volume, picture: Picture, origin: DVec3, toward: DVec3) -> Sight {
+pub fn cast_nearest(volume: &Volume, picture: Picture, origin: DVec3, toward: DVec3) -> RayResult {
     let mut scene = scene(picture);
     scene.sampling.filter = Filter::Nearest;
     cast_scene(volume, &scene, origin, toward)

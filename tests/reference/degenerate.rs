@@ -1,7 +1,7 @@
 //! Thin volumes, rays along axes, in faces, through edges and corners.
 
 use angioray::frame::Kind;
-use angioray::reference::Sight;
+use angioray::reference::RayResult;
 use angioray::scene::{Filter, Knot, Phong, Picture, Projection, Rgb, TransferFunction};
 use angioray::volume::{Geometry, Volume};
 use glam::DVec3;
@@ -20,12 +20,12 @@ fn fog() -> Picture {
     )
 }
 
-fn is_sane(sight: &Sight) -> bool {
-    let lit = sight.color.iter().all(|c| (0.0..=1.3).contains(c));
-    let unit = (sight.normal_world.length() - 1.0).abs() < 1e-12;
-    lit && sight.value.is_finite()
-        && !sight.depth_mm.is_nan()
-        && (unit || sight.normal_world == DVec3::ZERO)
+fn is_sane(result: &RayResult) -> bool {
+    let lit = result.color.iter().all(|c| (0.0..=1.3).contains(c));
+    let unit = (result.normal_world.length() - 1.0).abs() < 1e-12;
+    lit && result.value.is_finite()
+        && !result.depth_mm.is_nan()
+        && (unit || result.normal_world == DVec3::ZERO)
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn special_rays_agree_with_their_neighbours() {
     let mut compared = 0;
     for _ in 0..300 {
         for volume in awkward(&mut random) {
-            let reach = last(&volume).max_element() + 3.0;
+            let length = last(&volume).max_element() + 3.0;
             // From a lattice point or between, along a direction with vanishing components.
             let mut eye = random.point(DVec3::splat(-2.0), last(&volume) + 2.0);
             let mut dir = random.direction();
@@ -188,13 +188,13 @@ fn special_rays_agree_with_their_neighbours() {
                 fog(),
             ];
             for (i, picture) in pictures.into_iter().enumerate() {
-                let a = cast(&volume, picture.clone(), eye, eye + dir * reach);
-                let near = cast_nearest(&volume, picture.clone(), eye, eye + dir * reach);
-                let b = cast(&volume, picture, eye + nudge, eye + nudge + dir * reach);
+                let a = cast(&volume, picture.clone(), eye, eye + dir * length);
+                let near = cast_nearest(&volume, picture.clone(), eye, eye + dir * length);
+                let b = cast(&volume, picture, eye + nudge, eye + nudge + dir * length);
                 assert!(is_sane(&a) && is_sane(&near), "{eye} {dir} {a:?} {near:?}");
                 // Where both rays run well inside, extrema and mean are continuous.
                 if i < 3 && a.kind == b.kind && a.kind == Kind::Surface {
-                    let length = |s: &Sight| s.cells > 0;
+                    let length = |s: &RayResult| s.cells > 0;
                     if length(&a) && a.cells.abs_diff(b.cells) == 0 {
                         compared += 1;
                         assert!((a.value - b.value).abs() < 1e-5, "{eye} {dir} {a:?} {b:?}");

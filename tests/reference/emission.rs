@@ -121,7 +121,7 @@ fn the_opacity_limit_is_a_kink_of_its_own() {
 #[test]
 fn two_slabs_composite_front_to_back() {
     let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
-    // Two knots at 4: a jump. Half way along the ramp red becomes blue.
+    // Two knots at 4: a jump. Halfway along the ramp red becomes blue.
     let tf = transfer(
         &[
             knot(0.0, red, 0.3),
@@ -363,7 +363,7 @@ fn sharp_highlights_between_the_nodes_are_found() {
 }
 
 #[test]
-fn a_normal_that_swings_round_in_a_moment_is_resolved() {
+fn a_normal_that_turns_abruptly_is_resolved() {
     // ∇Φ = (2 (x − c), δ, 0): in the middle plane it swings from −x to +x within w = δ/2 of c.
     let (c, delta) = (2.375, 2.0_f64.powi(-16));
     let swing = volume([6, 5, 5], Geometry::default(), |p| {

@@ -1,7 +1,7 @@
 //! What must not change: the scene moved, turned, scaled or mirrored as a whole.
 
 use angioray::frame::Kind;
-use angioray::reference::{Sight, Tracer};
+use angioray::reference::{RayResult, Tracer};
 use angioray::scene::{
     Camera, Knot, Lens, Phong, Picture, Projection, Rgb, Scene, TransferFunction,
 };
@@ -51,7 +51,7 @@ fn pictures(unit_length_mm: f64) -> Vec<Picture> {
     ]
 }
 
-fn sights(volume: &Volume, picture: Picture, camera: Camera) -> Vec<Sight> {
+fn results(volume: &Volume, picture: Picture, camera: Camera) -> Vec<RayResult> {
     let scene = Scene {
         camera,
         ..scene(picture)
@@ -64,7 +64,7 @@ fn sights(volume: &Volume, picture: Picture, camera: Camera) -> Vec<Sight> {
 }
 
 /// The largest difference of two pictures, depths divided by `scale`, normals turned by `turn`.
-fn difference(a: &[Sight], b: &[Sight], turn: DMat3, scale: f64) -> f64 {
+fn difference(a: &[RayResult], b: &[RayResult], turn: DMat3, scale: f64) -> f64 {
     let mut worst = 0.0_f64;
     for (a, b) in a.iter().zip(b) {
         worst = worst.max((a.value - b.value).abs());
@@ -98,10 +98,10 @@ fn turning_volume_and_camera_together_changes_nothing() {
     let plain = Geometry::new(DVec3::ZERO, DMat3::IDENTITY, DVec3::new(1.0, 1.25, 0.75)).unwrap();
     let turned = Geometry::new(shift, turn, plain.spacing_mm()).unwrap();
     for picture in pictures(1.0) {
-        let still = sights(&blobs(plain), picture.clone(), camera(EYE, TARGET, UP));
+        let still = results(&blobs(plain), picture.clone(), camera(EYE, TARGET, UP));
         let to = |p: DVec3| turn * p + shift;
         let moved = camera(to(EYE), to(TARGET), turn * UP);
-        let moved = sights(&blobs(turned), picture.clone(), moved);
+        let moved = results(&blobs(turned), picture.clone(), moved);
         // The integrator may split elsewhere: it answers for 1e-8.
         let limit = if picture.mode().name() == "dvr" {
             2e-8
@@ -114,7 +114,7 @@ fn turning_volume_and_camera_together_changes_nothing() {
             picture.mode()
         );
         let tilted = camera(to(EYE), to(TARGET) + 1e-4, turn * UP);
-        let tilted = sights(&blobs(turned), picture, tilted);
+        let tilted = results(&blobs(turned), picture, tilted);
         assert!(difference(&still, &tilted, turn, 1.0) > limit);
     }
 }
@@ -132,14 +132,14 @@ fn a_left_handed_file_of_the_same_object_gives_the_same_picture() {
         field(DVec3::new(11.0 - p.x, p.y, p.z))
     });
     for picture in pictures(1.0) {
-        let a = sights(&blobs(plain), picture.clone(), camera(EYE, TARGET, UP));
-        let b = sights(&reversed, picture.clone(), camera(EYE, TARGET, UP));
+        let a = results(&blobs(plain), picture.clone(), camera(EYE, TARGET, UP));
+        let b = results(&reversed, picture.clone(), camera(EYE, TARGET, UP));
         assert!(
             difference(&a, &b, DMat3::IDENTITY, 1.0) < 2e-8,
             "{}",
             picture.mode()
         );
-        let wrong = sights(&blobs(mirrored), picture, camera(EYE, TARGET, UP));
+        let wrong = results(&blobs(mirrored), picture, camera(EYE, TARGET, UP));
         assert!(difference(&a, &wrong, DMat3::IDENTITY, 1.0) > 1e-3);
     }
 }
@@ -149,10 +149,10 @@ fn scaling_everything_scales_depth_alone() {
     for scale in [2.0, 1e-6, 1e6] {
         let scaled = Geometry::new(DVec3::ZERO, DMat3::IDENTITY, DVec3::splat(scale)).unwrap();
         for (small, large) in pictures(1.0).into_iter().zip(pictures(scale)) {
-            let a = sights(&blobs(Geometry::default()), small, camera(EYE, TARGET, UP));
+            let a = results(&blobs(Geometry::default()), small, camera(EYE, TARGET, UP));
             let far = camera(EYE * scale, TARGET * scale, UP);
             let mode = large.mode().name();
-            let b = sights(&blobs(scaled), large, far);
+            let b = results(&blobs(scaled), large, far);
             assert!(
                 difference(&a, &b, DMat3::IDENTITY, scale) < 2e-8,
                 "{mode} {scale}"
@@ -170,12 +170,12 @@ fn scaling_everything_scales_depth_alone() {
 fn a_far_origin_and_a_far_eye_cost_few_digits() {
     let away = DVec3::new(1e6, -2e6, 5e5);
     let there = Geometry::new(away, DMat3::IDENTITY, DVec3::ONE).unwrap();
-    let a = sights(
+    let a = results(
         &blobs(Geometry::default()),
         iso(4.0, true),
         camera(EYE, TARGET, UP),
     );
-    let b = sights(
+    let b = results(
         &blobs(there),
         iso(4.0, true),
         camera(EYE + away, TARGET + away, UP),

@@ -22,7 +22,7 @@ fn plane_error(volume: &Volume, a: f64, b: DVec3, iso_value: f64) -> f64 {
         let index = volume.geometry().index_from_world();
         let (o, d) = (index.transform_point3(eye), index.transform_vector3(dir));
         let t = (iso_value - a - b.dot(o)) / b.dot(d);
-        // A grazing ray turns a rounding error of Φ into a long way.
+        // A grazing ray turns a rounding error of Φ into a long distance.
         let graze = b.dot(d).abs() / (b.length() * d.length());
         worst = worst.max((hit.depth_mm - t).abs() * graze);
     }
@@ -339,7 +339,7 @@ fn the_nearest_filter_hits_the_voxels_boxes() {
     assert_eq!(hit.normal_world, DVec3::NEG_X);
     let back = cast_nearest(&steps, iso(4.0, true), at(6.0), at(-9.0));
     assert_eq!((back.depth_mm, back.value), (2.5, 9.0));
-    // Half-way belongs to the higher voxel.
+    // Halfway belongs to the higher voxel.
     let side = |x: f64| {
         cast_nearest(
             &steps,

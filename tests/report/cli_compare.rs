@@ -23,7 +23,7 @@ fn row<'a>(results: &'a Value, mode: &str, setting: &str) -> &'a Value {
 const SMALL: &str = "compare ball.nrrd -o out --size 40x40 --repeats 2 --iso 100 --cache cache";
 
 #[test]
-fn every_setting_is_judged_timed_and_pictured() {
+fn every_setting_is_evaluated_timed_and_pictured() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -103,12 +103,12 @@ fn the_figures_are_those_of_the_pictures() {
     let line = SMALL.replace(" --iso 100", "");
     place.done(&format!("{line} --modes mip {device}"));
     let results = place.json("out/results.json");
-    let truth = pixels(&place.path("out/pictures/mip-00-reference.png"));
+    let reference = pixels(&place.path("out/pictures/mip-00-reference.png"));
     let mut wrong = 0;
     for row in rows(&results) {
         let file = row["files"]["png"].as_str().unwrap();
         let picture = pixels(&place.path(&format!("out/{file}")));
-        let differences = truth.iter().zip(&picture);
+        let differences = reference.iter().zip(&picture);
         let differences = differences.flat_map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()));
         let max = differences.fold(0.0, f64::max);
         // Both pictures are rounded to 255 levels.
@@ -241,21 +241,24 @@ fn an_option_that_goes_with_no_compared_mode_is_refused() {
     for (options, wanted) in [
         (
             "--modes mip,iso --tf cta",
-            "'tf' does not go with any mode that is compared: mip, iso",
+            "'tf' cannot be combined with any mode that is compared: mip, iso",
         ),
-        ("--modes iso --tf cta", "'tf' does not go with mode 'iso'"),
+        (
+            "--modes iso --tf cta",
+            "'tf' cannot be combined with mode 'iso'",
+        ),
         (
             "--modes mip,minip --iso 3",
-            "'iso' does not go with any mode",
+            "'iso' cannot be combined with any mode",
         ),
         ("--modes dvr --ambient 0.3", "'ambient' has no effect"),
         (
             "--modes iso,dvr --window 0,9",
-            "'window' does not go with any mode",
+            "'window' cannot be combined with any mode",
         ),
         (
             "--modes dvr,mean --probe off",
-            "'probe' does not go with any mode",
+            "'probe' cannot be combined with any mode",
         ),
     ] {
         let said = place.refused(&format!("compare ball.nrrd -o out {options}"), 2);
@@ -264,7 +267,7 @@ fn an_option_that_goes_with_no_compared_mode_is_refused() {
 }
 
 #[test]
-fn what_is_done_before_a_failure_is_kept() {
+fn what_is_done_before_a_failure_stays() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -303,7 +306,7 @@ fn wrong_usage_is_refused_before_the_work() {
         (
             "compare ball.nrrd -o out --mode iso --modes mip",
             2,
-            "'--modes' and '--mode' exclude each other",
+            "'--modes' and '--mode' cannot be combined",
         ),
         (
             "compare ball.nrrd -o out --modes iso,iso",
@@ -318,12 +321,12 @@ fn wrong_usage_is_refused_before_the_work() {
         (
             "compare ball.nrrd -o out --repeats 0",
             2,
-            "is not a whole number from 1 on",
+            "is not a whole number of at least 1",
         ),
         (
             "compare ball.nrrd -o out --configs bad.toml",
             2,
-            "'iso' says what is seen",
+            "'iso' changes what is shown",
         ),
         (
             "compare ball.nrrd -o out --configs none.toml",

@@ -128,7 +128,7 @@ fn what_a_bound_chooses_takes_part_and_is_stored() {
     assert_eq!(rows[1]["flags"], chosen["chosen"]);
     let greatest = |row: &Value| row["error"]["value"]["max"].as_f64().unwrap();
     assert!(greatest(&rows[1]) <= 0.01);
-    // The control: without it the bound would not be kept.
+    // The control: without it the bound would not be met.
     assert!(greatest(&rows[0]) > 0.01, "{}", greatest(&rows[0]));
 }
 
@@ -430,7 +430,10 @@ fn names_that_would_be_taken_for_another_are_refused() {
         ),
         ("--scene peers.toml", "called 'black 9: night'"),
         ("--configs mip.toml", "no setting for mode 'iso'"),
-        ("--quad simpson", "'quad' does not go with mode 'iso'"),
+        (
+            "--quad simpson",
+            "'quad' cannot be combined with mode 'iso'",
+        ),
         ("--max-error value:1%", "only a projection shows values"),
     ] {
         let line = format!("{SMALL} --modes iso --iso 100 {device} {line}");
@@ -439,7 +442,7 @@ fn names_that_would_be_taken_for_another_are_refused() {
     }
     let said = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
     assert!(
-        said.contains("'refine' does not go with mode 'mip'"),
+        said.contains("'refine' cannot be combined with mode 'mip'"),
         "{said}"
     );
     // The control: alone each of these is fine, and a file's modes are those that are compared.
@@ -486,7 +489,7 @@ fn a_flat_volume_is_compared_too() {
 }
 
 #[test]
-fn without_a_cache_folder_nothing_is_kept_and_all_else_works() {
+fn without_a_cache_folder_nothing_is_cached_and_all_else_works() {
     let Some(device) = common::device_flag() else {
         return;
     };

@@ -129,7 +129,7 @@ fn a_real_peer_draws_what_the_reference_draws() {
     peer.load(&volume).unwrap();
     let mut drawn = 0;
     for scene in scenes(&volume) {
-        let truth = common::on_reference(&volume, &scene);
+        let reference = common::on_reference(&volume, &scene);
         for setting in peer.settings(scene.picture.mode().name()) {
             let ready = match peer.prepare(&volume, &scene, &setting).unwrap() {
                 Readiness::Ready(ready) => ready,
@@ -139,14 +139,14 @@ fn a_real_peer_draws_what_the_reference_draws() {
                 }
             };
             let PeerFrame { frame, .. } = peer.render(&ready).unwrap();
-            let off = color_error(&truth, &frame).unwrap().rmse;
+            let off = color_error(&reference, &frame).unwrap().rmse;
             let off_moved = moved(&frame)
-                .map(|frame| color_error(&truth, &frame).unwrap().rmse)
+                .map(|frame| color_error(&reference, &frame).unwrap().rmse)
                 .into_iter()
                 .fold(f64::INFINITY, f64::min);
             let depth = frame.layers.has(Layer::Depth).then(|| {
                 let voxel_mm = volume.geometry().smallest_spacing_mm();
-                depth_error(&truth, &frame, voxel_mm).unwrap()
+                depth_error(&reference, &frame, voxel_mm).unwrap()
             });
             let what = format!(
                 "{} {:?} {:?} {setting}: rmse {off:.4}, moved {off_moved:.4}, {depth:?} {:?}",

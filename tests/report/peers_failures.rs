@@ -59,12 +59,12 @@ fn a_peer_that_babbles_is_quoted() {
     let babbles = r#"*'"render"'*) echo 'Warning: no depth buffer' ;;"#;
     assert_eq!(
         refusal(&Fake::answering(&[LOAD, READY, babbles])),
-        "the peer fake 1.2 was to render and said 'Warning: no depth buffer', which is no JSON object"
+        "the peer fake 1.2 was to render and answered 'Warning: no depth buffer', which is not a JSON object"
     );
     let other = r#"*'"load"'*) echo '{"milliseconds":1}' ;;"#;
     let said = refusal(&Fake::answering(&[other]));
     assert!(
-        said.contains("gave no such answer: missing field `loaded`"),
+        said.contains("gave another answer: missing field `loaded`"),
         "{said}"
     );
     let twice = r#"*'"load"'*) printf '{"loaded":1}\nmore\n' ;;"#;

@@ -21,7 +21,7 @@ use fake_peer::{
 };
 
 #[test]
-fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
+fn a_peer_says_what_it_is_and_draws_as_often_as_requested() {
     let depth = [ONE, INFINITE].concat();
     let forgets = r#"*'"forget"'*) echo '{}' ;;"#;
     let pictures = renders(&two_pixels(), Some(&depth));
@@ -66,12 +66,15 @@ fn a_peer_says_what_it_is_and_draws_as_often_as_it_is_asked() {
     assert_eq!(*display, [[1.0; 4], [grey, grey, grey, 1.0]]);
 
     // It is evaluated as any picture is.
-    let mut truth = picture.frame.clone();
-    assert_eq!(color_error(&truth, &picture.frame).unwrap().max, 0.0);
-    truth.display.as_mut().unwrap()[1] = [grey - 0.25; 4];
-    truth.layers.insert(DEPTH, vec![f32::INFINITY; 2]);
-    assert!((color_error(&truth, &picture.frame).unwrap().max - 0.25).abs() < 1e-6);
-    assert_eq!(depth_error(&truth, &picture.frame, 1.0).unwrap().extra, 1);
+    let mut reference = picture.frame.clone();
+    assert_eq!(color_error(&reference, &picture.frame).unwrap().max, 0.0);
+    reference.display.as_mut().unwrap()[1] = [grey - 0.25; 4];
+    reference.layers.insert(DEPTH, vec![f32::INFINITY; 2]);
+    assert!((color_error(&reference, &picture.frame).unwrap().max - 0.25).abs() < 1e-6);
+    assert_eq!(
+        depth_error(&reference, &picture.frame, 1.0).unwrap().extra,
+        1
+    );
 }
 
 #[test]
@@ -81,7 +84,7 @@ fn a_picture_without_depth_is_one() {
 }
 
 #[test]
-fn a_volume_is_told_in_its_own_voxels() {
+fn a_volume_is_sent_in_its_own_voxels() {
     let keep = r#"*'"load"'*) cp "$(printf '%s' "$line" | sed 's/.*"file":"\([^"]*\)".*/\1/')" "$1/voxels"; echo '{"loaded":0}' ;;"#;
     let fake = Fake::answering(&[keep]);
     let volume = volume();
@@ -104,7 +107,7 @@ fn a_volume_is_told_in_its_own_voxels() {
 }
 
 #[test]
-fn a_scene_is_told_in_stored_values_and_linear_light() {
+fn a_scene_is_sent_in_stored_values_and_linear_light() {
     let fake = Fake::answering(&[LOAD, READY]);
     let volume = volume();
     let mut peer = fake.start().unwrap();

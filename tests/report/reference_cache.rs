@@ -88,7 +88,7 @@ fn what_was_not_used_for_a_month_is_removed() {
     };
     picture(folder.path(), &volume, &seen, Wanted::ALL);
     picture(folder.path(), &volume, &other, Wanted::ALL);
-    // What is no picture is nobody's to remove.
+    // A file that is not a picture is not removed.
     fs::write(folder.path().join("notes.txt"), "").unwrap();
     set_back(29);
     // Used again: young again.

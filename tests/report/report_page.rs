@@ -1,5 +1,5 @@
 //! The page in which a comparison ends, in a browser: it works, it says what it was given, and it
-//! asks nobody for anything. Needs Chromium; skips without, unless `REQUIRE_CHROMIUM=1`.
+//! requests nothing from the network. Needs Chromium; skips without, unless `REQUIRE_CHROMIUM=1`.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -273,7 +273,7 @@ fn report() -> Report {
 }
 
 #[test]
-fn everything_is_there_and_nothing_is_asked_for() {
+fn everything_is_there_and_nothing_is_requested() {
     let Some(chromium) = chromium() else { return };
     let page = report().html().unwrap();
     assert!(!page.contains("http:") && !page.contains("https:"));
@@ -477,7 +477,7 @@ fn the_report_that_the_readme_shows_has_no_faults() {
 }
 
 #[test]
-fn it_opens_on_the_picture_that_tells_most() {
+fn it_opens_on_the_picture_that_shows_most() {
     let Some(chromium) = chromium() else { return };
     let of = |opens_on: Option<usize>| {
         let mut report = report();
@@ -645,7 +645,7 @@ fn with_long_names() -> Report {
     );
     report.facts = vec![("Compared with".into(), "y".repeat(80))];
     report.findings = vec![format!(
-        "iso: worth their time: {long} (12.3 ms, 1.2×10⁻⁵), {}",
+        "iso: on the Pareto front: {long} (12.3 ms, 1.2×10⁻⁵), {}",
         "z".repeat(60)
     )];
     report.sections[0].scatters = vec![Scatter {
@@ -836,7 +836,7 @@ fn what_is_no_picture_is_refused() {
     wrong[2].png = b"GIF89a".to_vec();
     report.sections[0].gallery = Some(gallery(wrong));
     let error = report.html().unwrap_err().to_string();
-    assert!(error.contains("\"step 2\" is no PNG"), "{error}");
+    assert!(error.contains("\"step 2\" is not a PNG"), "{error}");
 
     let mut twice = pictures(&mut report);
     twice[2] = twice[0].clone();

@@ -104,7 +104,7 @@ fn over_the_pole_nothing_breaks() {
 }
 
 /// How far the bounding sphere's silhouette reaches, as a share of half the picture's smaller side.
-fn reach(line: &[&str]) -> f64 {
+fn extent(line: &[&str]) -> f64 {
     let scene = resolved(line).scene;
     let smaller = scene.size.aspect().min(1.0);
     let distance = scene.camera.eye_world().distance(SUBJECT.center_world);
@@ -126,16 +126,16 @@ fn the_bounding_sphere_fits_the_smaller_side_at_zoom_1() {
         &["--fov", "0.5", "--view", "left"],
     ] {
         assert!(
-            (reach(line) - 1.0).abs() < 1e-9,
+            (extent(line) - 1.0).abs() < 1e-9,
             "{line:?}: {}",
-            reach(line)
+            extent(line)
         );
     }
-    assert!((reach(&["--zoom", "2"]) - 2.0).abs() < 1e-9);
-    assert!((reach(&["--ortho", "40"]) - 0.5).abs() < 1e-9);
-    assert!((reach(&["--ortho", "40", "--zoom", "2"]) - 1.0).abs() < 1e-9);
+    assert!((extent(&["--zoom", "2"]) - 2.0).abs() < 1e-9);
+    assert!((extent(&["--ortho", "40"]) - 0.5).abs() < 1e-9);
+    assert!((extent(&["--ortho", "40", "--zoom", "2"]) - 1.0).abs() < 1e-9);
     // The control.
-    assert!((reach(&["--zoom", "1.01"]) - 1.0).abs() > 1e-3);
+    assert!((extent(&["--zoom", "1.01"]) - 1.0).abs() > 1e-3);
 }
 
 #[test]

@@ -286,7 +286,7 @@ fn order_statistics_are_replaced_by_their_values() {
         ["lmip-threshold = p1 is 7", "window = p99.5,p1 is 40,7"]
     );
     assert!(options.resolve(&SUBJECT).is_ok());
-    // The controls: a share of the range is none, and nothing is wanted where none is named.
+    // The controls: a share of the range is not, and nothing is wanted if none is named.
     let share = file("iso = '50%'");
     let of_share = share.clone().measured(SUBJECT.range, |_| unreachable!());
     assert_eq!(of_share, (share, vec![]));
@@ -329,26 +329,29 @@ fn nonsense_is_refused_with_a_reason() {
     for (text, reason) in [
         (
             "mode = 'iso'\ntf = 'cta'",
-            "'tf' does not go with mode 'iso'",
+            "'tf' cannot be combined with mode 'iso'",
         ),
-        ("tf = 'cta'", "'tf' does not go with mode 'iso'"),
+        ("tf = 'cta'", "'tf' cannot be combined with mode 'iso'"),
         (
             "mode = 'mip'\ncaps = true",
-            "'caps' does not go with mode 'mip'",
+            "'caps' cannot be combined with mode 'mip'",
         ),
         (
             "mode = 'mip'\nlmip-threshold = 4",
-            "does not go with mode 'mip'",
+            "cannot be combined with mode 'mip'",
         ),
         ("mode = 'mean'\nshading = 'phong'", "no surface to light"),
-        ("mode = 'dvr'\nwindow = '1,2'", "'window' does not go with"),
+        (
+            "mode = 'dvr'\nwindow = '1,2'",
+            "'window' cannot be combined with",
+        ),
         ("mode = 'dvr'\nlight = 'headlight'", "without shading"),
         ("shading = 'none'\nspecular = 0.5", "without shading"),
-        ("fov = 30\northo = 100", "exclude each other"),
-        ("eye = [1, 2, 3]\nview = 'left'", "exclude each other"),
-        ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "exclude each other"),
-        ("carm = 'LAO 10'\nazimuth = 10", "exclude each other"),
-        ("up = [0, 1, 0]", "'up' goes with 'eye'"),
+        ("fov = 30\northo = 100", "cannot be combined"),
+        ("eye = [1, 2, 3]\nview = 'left'", "cannot be combined"),
+        ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "cannot be combined"),
+        ("carm = 'LAO 10'\nazimuth = 10", "cannot be combined"),
+        ("up = [0, 1, 0]", "'up' can only be given with 'eye'"),
         ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
         let said = refusal(text);
@@ -375,7 +378,7 @@ fn a_wrong_scene_file_is_refused_with_its_line() {
         ("mode = 'mip'\n\nwindow = 'x'", "scene.toml:3: "),
         (
             "size = 9\nmood = 'dark'",
-            "scene.toml:2: 'mood' is no option",
+            "scene.toml:2: 'mood' is not an option",
         ),
         ("raw_size = '4x4x4'", "scene.toml:1: 'raw_size'"),
         ("step = 0", "scene.toml:1: "),
@@ -483,7 +486,7 @@ fn gradients_belong_to_normals_and_their_numbers_to_precomputed_ones() {
     for (wrong, reason) in [
         (
             "gradient-scale = 3",
-            "'gradient-scale' does not go with gradient 'central'",
+            "'gradient-scale' cannot be combined with gradient 'central'",
         ),
         (
             "gradient = 'forward'\ngradient-smooth = 1",
@@ -538,11 +541,11 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
     for (wrong, reason) in [
         (
             "mode = 'iso'\nquad = 'rk4'",
-            "'quad' does not go with mode 'iso'",
+            "'quad' cannot be combined with mode 'iso'",
         ),
         (
             "mode = 'mip'\nquad = 'adaptive'",
-            "'quad' does not go with mode 'mip'",
+            "'quad' cannot be combined with mode 'mip'",
         ),
         ("quad = 'simpson'", "only dvr sums light along the ray"),
         (
@@ -555,15 +558,15 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
         ),
         (
             "mode = 'mean'\nhomogeneity = 0.1",
-            "'homogeneity' does not go with mode 'mean'",
+            "'homogeneity' cannot be combined with mode 'mean'",
         ),
         (
             "mode = 'dvr'\nhomogeneity = 0.1\nshading = 'phong'",
-            "'homogeneity' does not go with shading",
+            "'homogeneity' cannot be combined with shading",
         ),
         (
             "mode = 'dvr'\nhomogeneity = 0.1\nquad = 'adaptive'",
-            "'homogeneity' does not go with quad 'adaptive'",
+            "'homogeneity' cannot be combined with quad 'adaptive'",
         ),
         (
             "mode = 'dvr'\nhomogeneity-rule = 'range'",
@@ -593,8 +596,9 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
     let averaged = "mode = 'dvr'\nhomogeneity = 0.1";
     let adaptive = "adaptive:0.001".parse().ok();
     assert_eq!(quad(&["--quad", "adaptive"], averaged), (adaptive, false));
-    let (kept, is_averaged) = quad(&["--homogeneity", "0.1"], "mode = 'dvr'\nquad = 'adaptive'");
-    assert!(kept.is_none() && is_averaged);
+    let (quadrature, is_averaged) =
+        quad(&["--homogeneity", "0.1"], "mode = 'dvr'\nquad = 'adaptive'");
+    assert!(quadrature.is_none() && is_averaged);
 }
 
 #[test]

@@ -9,8 +9,8 @@ use crate::options::{ErrorBound, SceneOptions, TransferChoice};
 use crate::scene::Mode;
 use crate::volume::files_of;
 
-use super::super::load::Source;
 use super::super::outputs;
+use super::super::source::Source;
 
 /// Checks that every flag goes with one of the modes.
 pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
@@ -35,7 +35,7 @@ pub fn meaning(flags: &SceneOptions, modes: &[Mode]) -> Result<()> {
     }
     let modes: Vec<String> = modes.iter().map(Mode::to_string).collect();
     Err(Error::usage(format!(
-        "'{key}' does not go with any mode that is compared: {}",
+        "'{key}' cannot be combined with any mode that is compared: {}",
         modes.join(", ")
     ))
     .hint("leave it out, or name another mode in '--modes'"))

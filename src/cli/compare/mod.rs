@@ -17,10 +17,10 @@ use crate::progress::{Stage, UNKNOWN_TOTAL};
 use crate::render::Renderer;
 use crate::scene::Mode;
 
-use super::engine::{DeviceOptions, Engine};
-use super::load::{Loaded, Source, ms_since};
+use super::backend::{Backend, DeviceOptions};
 use super::progress::Bars;
 use super::scene::SceneArgument;
+use super::source::{Loaded, Source, ms_since};
 use super::terminal::{lines_to_stdout, message, note};
 use options::{CompareOptions, Named};
 use page::{about, report};
@@ -35,9 +35,9 @@ use reference_cache::reference_cache;
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
-An option applies to those of the modes that it goes with: --iso and --tf can stand side by side.
+An option applies to the modes that it belongs to: --iso and --tf can be given together.
 
-What --sampling, --step, --filter and the like say is compared as one setting more, 'as given'; what
+The options --sampling, --step, --filter and the like make one more setting, 'as given'; what
 --max-error chooses is another. All are compared with the reference of the scene, in linear
 interpolation and with central differences.
 
@@ -67,11 +67,11 @@ pub struct CompareArguments {
     device: DeviceOptions,
 }
 
-/// Those shown where none are named.
+/// The modes that are compared if none are named.
 const MODES: [Mode; 4] = [Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr];
 const REPEATS: u32 = 5;
 
-/// What flags and scene file request together.
+/// A comparison as flags and scene file request it.
 struct Request {
     output: PathBuf,
     compare: CompareOptions,
@@ -93,10 +93,10 @@ impl CompareArguments {
         let mut options = source.stored(request.options.clone());
         // Results and pictures are passed on together: they name the volume, not its place.
         options.volume.volume = Some(FilePath(source.name().to_owned()));
-        let Engine::Device {
+        let Backend::Device {
             device,
             options: use_of_device,
-        } = Engine::open(&request.device)?
+        } = Backend::open(&request.device)?
         else {
             return Err(Error::usage(
                 "the reference cannot be compared: it is what others are compared with",
@@ -155,7 +155,7 @@ impl CompareArguments {
         let device = self.device.over_file(file.group()?);
         let Some(FilePath(output)) = compare.output.clone() else {
             return Err(Error::usage("no folder for the comparison was named")
-                .hint("give it by '--output', or as 'output' in the scene file"));
+                .hint("give it with '--output', or as 'output' in the scene file"));
         };
         let configs = compare.configs.as_ref();
         let configs = configs

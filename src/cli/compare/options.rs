@@ -9,15 +9,15 @@ use crate::options::{Count, FilePath, SceneFile, SceneOptions};
 use crate::scene::Mode;
 
 group! {
-    /// What is compared, and where it goes.
+    /// The options of a comparison: what is compared, and where the results go.
     #[command(next_help_heading = "Comparison")]
     pub struct CompareOptions {
         /// A folder for report.html, results.json, results.csv, the pictures and their error maps;
-        /// made where there is none
+        /// created if it does not exist
         #[arg(short, long, value_name = "DIR")]
         output: FilePath,
 
-        /// The modes, with commas between [default: the one of --mode, else iso,mip,lmip,dvr]
+        /// The modes, separated by commas [default: the one of --mode, else iso,mip,lmip,dvr]
         #[arg(long, value_name = "LIST")]
         modes: Modes,
 
@@ -46,7 +46,7 @@ group! {
 pub const OFF: &str = "off";
 
 impl CompareOptions {
-    /// What a scene file says of the comparison; the files that it names are relative to it.
+    /// The options that a scene file gives; the files that it names are relative to it.
     pub fn of_file(file: &SceneFile) -> Result<Self> {
         let options = file.group::<Self>()?;
         let named_here = |path: FilePath| file.named_here(path);
@@ -66,7 +66,7 @@ impl CompareOptions {
     }
 }
 
-/// `--modes`.
+/// The modes given by `--modes`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Modes(Vec<Mode>);
 
@@ -98,19 +98,21 @@ impl Named {
         Self(compare.modes.take(), options.picture.mode.take())
     }
 
+    /// Checks that these two options do not contradict each other.
+    ///
     /// # Errors
     /// Usage: both, and not the same.
     pub fn check(&self) -> Result<()> {
         match self {
             Self(Some(Modes(modes)), Some(mode)) if modes != &[*mode] => Err(Error::usage(
-                "'--modes' and '--mode' exclude each other: both say what is compared",
+                "'--modes' and '--mode' cannot be combined: both say what is compared",
             )
             .hint("leave out '--mode'")),
             _ => Ok(()),
         }
     }
 
-    /// In the order in which they are named; nothing where none is.
+    /// The modes in the order in which they are named; `None` if none is.
     pub fn modes(self) -> Option<Vec<Mode>> {
         let Self(several, one) = self;
         let several = several.map(|Modes(modes)| modes);

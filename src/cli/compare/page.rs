@@ -8,8 +8,8 @@ use crate::lab::compare::{Compared, Comparison};
 use crate::lab::measure::Peer;
 use crate::lab::report::Report;
 
-use super::super::load::{Loaded, Source};
 use super::super::repeat::command_line;
+use super::super::source::{Loaded, Source};
 use super::super::stats::{DeviceStats, VolumeStats};
 
 /// The part of the results beside their rows.

@@ -1,7 +1,7 @@
 //! Where the reference's pictures are cached.
 
+use crate::cache;
 use crate::error::Result;
-use crate::kept;
 use crate::lab::measure::ReferenceCache;
 use crate::options::FilePath;
 use crate::volume::Volume;
@@ -19,7 +19,7 @@ pub fn reference_cache(wanted: Option<FilePath>, volume: &Volume) -> Result<Refe
         Some(FilePath(path)) => ReferenceCache::in_folder(&path, volume)
             .map_err(|error| error.hint("name another folder, or write '--cache off'")),
         None => {
-            let Some(folder) = kept::users_folder() else {
+            let Some(folder) = cache::user_folder() else {
                 return Ok(ReferenceCache::uncached(volume));
             };
             Ok(

@@ -5,7 +5,7 @@ use crate::lab::measure::Counts;
 use crate::render::GradientFigures;
 use crate::scene::Picture;
 
-use super::super::engine::Rendered;
+use super::super::backend::Rendered;
 use super::super::stats::{PassStats, Times};
 use super::plan::Plan;
 

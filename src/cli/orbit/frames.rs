@@ -6,7 +6,7 @@ use crate::scene::Orbit;
 
 use super::plan::Plan;
 
-/// What is seen in an orbit, and from where.
+/// The scene of an orbit and the cameras from which it is seen.
 pub struct Frames {
     first: Resolved,
     pub orbit: Orbit,

@@ -10,7 +10,7 @@ mod stats;
 use crate::batch::Destination;
 use crate::error::Result;
 
-use super::engine::Engine;
+use super::backend::Backend;
 use super::job::JobArguments;
 use super::progress::Bars;
 use super::render::{gradient_note, provenance};
@@ -26,7 +26,7 @@ use runner::{OrbitOutcome, OrbitRunner};
 #[command(override_usage = "angioray orbit VOLUME -o FRAMES --frames N [OPTIONS]")]
 #[command(mut_arg("output", |output| output.value_name("FRAMES").help(
     "The frames: pictures by a name with their number's place (frames/%04d.png, .jpg, .webp, .exr, .npy; \
-     a folder is made where there is none), or one animation: .gif, .apng (lossless), .mp4 and .webm (by ffmpeg)"
+     the folder is created if it does not exist), or one animation: .gif, .apng (lossless), .mp4 and .webm (by ffmpeg)"
 )))]
 #[command(after_help = "Example:
   angioray orbit head.nrrd -o head.mp4 --frames 120
@@ -53,10 +53,10 @@ impl OrbitArguments {
         let mut job = self.job.over(&file)?;
         let plan = Plan::of(options, &job)?;
         stopping::between_parts("frame", plan.ended_early())?;
-        let engine = Engine::open(&job.device)?;
+        let backend = Backend::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = job.source.load(engine.device_info(), &bars)?;
+        let loaded = job.source.load(backend.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
@@ -66,9 +66,9 @@ impl OrbitArguments {
         let runner = OrbitRunner {
             plan: &plan,
             job: &job,
-            engine: &engine,
+            backend: &backend,
             loaded: &loaded,
-            from: &provenance(&loaded, &engine),
+            from: &provenance(&loaded, &backend),
             bars: &bars,
         };
         let mine: Vec<u32> = plan.shard.frames(plan.frames.get()).collect();

@@ -21,7 +21,7 @@ group! {
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         degrees: AngleDeg,
 
-        /// What it turns about, through the target: up or right as in the first frame's picture, a
+        /// The axis of rotation, through the target: up or right as in the first frame's picture, a
         /// world axis, or a direction in world space; z is the patient's long axis, about which a
         /// C-arm turns [default: up]
         #[arg(long, value_name = "up|right|x|y|z|X,Y,Z", allow_hyphen_values = true)]

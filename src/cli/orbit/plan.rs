@@ -16,16 +16,16 @@ use super::super::outputs;
 use super::super::terminal::note;
 use super::options::OrbitOptions;
 
-/// What the flags and the scene file request.
+/// An orbit as flags and scene file request it.
 pub struct Plan {
     pub frames: FrameCount,
-    /// By which the camera turns in all.
+    /// The angle by which the camera turns in all, degrees.
     pub degrees: f64,
     pub axis: OrbitAxis,
     pub resume: bool,
     pub shard: Shard,
     pub destination: Destination,
-    /// Of the frames; an animation's is that of its pictures.
+    /// The encoding of the frames; for an animation, that of its pictures.
     pub encoding: Encoding,
     pub stats: Option<PathBuf>,
 }
@@ -33,12 +33,14 @@ pub struct Plan {
 impl Plan {
     const DEFAULT_DEGREES: f64 = 360.0;
 
+    /// Checks the options and plans the orbit.
+    ///
     /// # Errors
     /// Options that are missing or contradict each other, files that cannot be written or are read.
     pub fn of(options: OrbitOptions, job: &Job) -> Result<Self> {
         let Some(frames) = options.frames else {
             return Err(Error::usage("no number of frames was given")
-                .hint("give it by '--frames', such as --frames 120"));
+                .hint("give it with '--frames', such as --frames 120"));
         };
         let resume = options.resume.is_some_and(Switch::is_on);
         let (shard, given_by) = (options.shard)
@@ -76,7 +78,7 @@ impl Plan {
         }
     }
 
-    /// That a part of the frames, where no more are to be made, fits the rest.
+    /// Checks that a shard, which makes only a part of the frames, fits the other options.
     fn check_part(&self, job: &Job) -> Result<()> {
         let key = match (self.resume, self.shard) {
             (true, _) => "resume",
@@ -86,14 +88,14 @@ impl Plan {
         match &self.destination {
             Destination::Animation { path, .. } if self.shard != Shard::WHOLE => {
                 return Err(Error::usage(format!(
-                    "{}: an animation is one file: '--shard' does not go with it",
+                    "{}: an animation is one file: '--shard' cannot be combined with it",
                     path.display()
                 ))
                 .hint("write pictures, such as -o frames/%04d.png, and join them afterwards"));
             }
             _ if self.resume && !self.destination.recognises_finished() => {
                 return Err(Error::usage(format!(
-                    "{}: such files do not say what scene they are of: '--resume' does not go with them",
+                    "{}: such files do not record their scene, so '--resume' cannot be used with them",
                     job.output.path()?.display()
                 ))
                 .hint("write .png, .exr or an animation"));
@@ -102,7 +104,7 @@ impl Plan {
         }
         if job.bound.is_some() {
             return Err(Error::usage(format!(
-                "'max-error' and '{key}' exclude each other: each run would choose for itself, and frames would differ"
+                "'max-error' and '{key}' cannot be combined: each run would choose for itself, and frames would differ"
             ))
             .hint("choose once, by --max-error without it, and repeat the flags that were chosen"));
         }

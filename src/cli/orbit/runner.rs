@@ -8,10 +8,10 @@ use crate::progress::{Progress, Silent};
 use crate::scene::{Camera, Orbit, Scene};
 use crate::stop;
 
-use super::super::engine::{Caster, Engine};
+use super::super::backend::{Backend, Caster};
 use super::super::job::Job;
-use super::super::load::Loaded;
 use super::super::progress::Bars;
+use super::super::source::Loaded;
 use super::super::tolerance::choose;
 use super::frame_record::FrameRecord;
 use super::frames::Frames;
@@ -24,7 +24,7 @@ const VERIFIED_BESIDE: u32 = 3;
 pub struct OrbitRunner<'a> {
     pub plan: &'a Plan,
     pub job: &'a Job,
-    pub engine: &'a Engine,
+    pub backend: &'a Backend,
     pub loaded: &'a Loaded,
     pub from: &'a Provenance,
     pub bars: &'a Bars,
@@ -32,7 +32,7 @@ pub struct OrbitRunner<'a> {
 
 /// The frames that were made.
 pub struct OrbitOutcome {
-    /// Under the setting that was chosen, where one was.
+    /// The frames, under the setting that was chosen if one was.
     pub frames: Frames,
     pub chosen: Option<Choice>,
     pub written: Vec<Written<FrameRecord>>,
@@ -63,7 +63,7 @@ impl OrbitRunner<'_> {
             let seen = frames.at(index);
             let scene = seen.options.to_toml()?;
             // After a stop nothing is made, so that it does not matter which.
-            let is_there = !stop::asked()
+            let is_there = !stop::requested()
                 && (self.plan.destination).holds(index, seen.scene.size, &scene, self.from);
             if !is_there {
                 missing.push(index);
@@ -91,9 +91,9 @@ impl OrbitRunner<'_> {
         self.plan.destination.make_folder()?;
         let (loaded, bars) = (self.loaded, self.bars);
         let prepared = self
-            .engine
+            .backend
             .prepare(&loaded.volume, &self.job.source, bars)?;
-        let mut caster = self.engine.caster(&loaded.volume, &prepared)?;
+        let mut caster = self.backend.caster(&loaded.volume, &prepared)?;
         let chosen = match stop::over_failure(self.choose(&frames, &mut caster), || check(None)) {
             Err(stopped) if stopped.kind() == ErrorKind::Stopped => {
                 return Ok(OrbitOutcome::nothing(frames, Some(stopped)));
@@ -132,7 +132,7 @@ impl OrbitRunner<'_> {
         }
     }
 
-    /// What an error bound chooses, where there is one.
+    /// Chooses a setting for the error bound, if there is one.
     fn choose(&self, frames: &Frames, caster: &mut Caster<'_>) -> Result<Option<Choice>> {
         let Some(bound) = self.job.bound else {
             return Ok(None);
@@ -189,7 +189,7 @@ impl OrbitRunner<'_> {
         };
         let shots = (missing.iter().enumerate()).map_while(|(made, &index)| {
             match (shot(made, index), destination) {
-                (Err(error), Destination::Pictures { .. }) if stop::asked() => {
+                (Err(error), Destination::Pictures { .. }) if stop::requested() => {
                     stopped = Some(error);
                     None
                 }
@@ -208,7 +208,7 @@ impl OrbitRunner<'_> {
     /// # Errors
     /// It is, `made` of `of` frames being finished.
     fn check_stop(&self, chosen: Option<&Choice>, made: usize, of: usize) -> Result<()> {
-        if !stop::asked() {
+        if !stop::requested() {
             return Ok(());
         }
         let mut report = format!("stopped early: {made} of {of} frames are finished");
@@ -219,7 +219,7 @@ impl OrbitRunner<'_> {
                     "{report} and saved in {}; {path} is written when all are",
                     frames.folder().display()
                 ),
-                None => format!("{report}, and {path} has none of them"),
+                None => format!("{report}, and none of them is in {path}"),
             };
         }
         if self.plan.ended_early() != ErrorKind::Stopped {

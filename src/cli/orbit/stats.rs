@@ -32,7 +32,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
             command: "orbit",
             scene: &first.options,
             volume: VolumeStats::of(&runner.job.source.path, &loaded.volume, loaded.non_finite),
-            device: runner.engine.device(),
+            device: runner.backend.device(),
             channels: frame::channels(&plan.encoding),
             times_ms: Times {
                 read: loaded.read_ms,

@@ -59,7 +59,7 @@ impl Progress for TerminalBars {
         };
         stage.bar.set_message(on_one_line(name));
         if unknown || total <= COUNTED {
-            // Nothing advances it, or seldom: it turns by itself.
+            // Nothing advances it, or seldom: a timer turns it.
             self.show(&mut stage);
             stage.bar.enable_steady_tick(TICK);
         }

@@ -24,7 +24,7 @@ struct Shared {
 }
 
 struct State {
-    /// The outermost first.
+    /// The stages in work, the outermost first.
     stages: Vec<Stage>,
     /// When the last line was written; before the first, when there was something to say.
     last: Option<Instant>,
@@ -142,7 +142,7 @@ impl Drop for Lines {
         self.shared.lock().over = true;
         self.shared.changed.notify_all();
         if let Some(writer) = self.writer.take() {
-            // It writes lines and nothing else; what it could not write nobody misses.
+            // It only writes lines; one that it could not write does not matter.
             let _ = writer.join();
         }
     }
@@ -208,7 +208,7 @@ mod tests {
         idle.begin("a", UNKNOWN_TOTAL);
         written.recv_timeout(PATIENCE).unwrap();
         idle.end();
-        // One may have been on its way.
+        // One may have been under way.
         while written.recv_timeout(Duration::from_millis(30)).is_ok() {}
         assert!(written.recv_timeout(Duration::from_millis(30)).is_err());
     }

@@ -22,7 +22,7 @@ enum Form {
     Lines(Lines),
 }
 
-/// Up to so many units of a stage are counted; of more the share is said.
+/// The most units of a stage that are counted; with more of them the share is shown.
 const COUNTED: u64 = 99;
 
 /// The ones that are alive.

@@ -18,12 +18,12 @@ use super::FrameRate;
 const SPEED: i32 = 10;
 
 /// Players show anything quicker than 2/100 s as slowly as 10/100 s.
-const MOST_PER_SECOND: f64 = 50.0;
+const MAX_PER_SECOND: f64 = 50.0;
 
 pub(super) fn check(rate: FrameRate) -> Result<()> {
-    if rate.per_second() > MOST_PER_SECOND {
+    if rate.per_second() > MAX_PER_SECOND {
         return Err(Error::usage(format!(
-            "a .gif of {} frames per second: players take at most {MOST_PER_SECOND}",
+            "a .gif of {} frames per second: players take at most {MAX_PER_SECOND}",
             rate
         ))
         .hint("choose a smaller --fps, or write an .apng or .mp4"));

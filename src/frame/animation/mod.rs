@@ -18,17 +18,18 @@ use super::Frame;
 /// An animation's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnimationFormat {
-    /// At most 256 colours a frame, repeated for ever.
+    /// GIF: at most 256 colours a frame, repeated for ever.
     Gif,
-    /// Lossless, repeated for ever.
+    /// APNG: lossless, repeated for ever.
     Apng,
-    /// H.264, by ffmpeg.
+    /// MP4: H.264, by ffmpeg.
     Mp4,
-    /// VP9, by ffmpeg.
+    /// WebM: VP9, by ffmpeg.
     WebM,
 }
 
 impl AnimationFormat {
+    /// The extensions of file names, and the format that each means.
     pub const EXTENSIONS: [(&'static str, Self); 4] = [
         ("gif", Self::Gif),
         ("apng", Self::Apng),
@@ -36,7 +37,7 @@ impl AnimationFormat {
         ("webm", Self::WebM),
     ];
 
-    /// What the file name's extension says, in upper or lower case; `None` where it is no
+    /// The format that a file name's extension names, in upper or lower case; `None` if it is no
     /// animation's.
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?;
@@ -53,8 +54,11 @@ impl AnimationFormat {
 pub struct FrameRate(f64);
 
 impl FrameRate {
+    /// The possible rates, frames per second.
     pub const ALLOWED: std::ops::RangeInclusive<f64> = 0.01..=240.0;
 
+    /// Makes a rate, rounded to hundredths.
+    ///
     /// # Errors
     /// Outside [`FrameRate::ALLOWED`] (usage).
     pub fn new(per_second: f64) -> Result<Self> {
@@ -68,6 +72,7 @@ impl FrameRate {
         Ok(Self((per_second * 100.0).round() / 100.0))
     }
 
+    /// The rate in frames per second.
     pub fn per_second(self) -> f64 {
         self.0
     }
@@ -102,19 +107,23 @@ impl fmt::Display for FrameRate {
 /// How an animation is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Animation {
+    /// The file format.
     pub format: AnimationFormat,
+    /// How fast the frames follow each other.
     pub rate: FrameRate,
 }
 
-/// What comes: frames of one size, at least one.
+/// The frames to come: how many, their size and their rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reel {
+    /// The size of every frame.
     pub size: ImageSize,
+    /// The number of frames, at least one.
     pub frames: u32,
 }
 
 impl Animation {
-    /// That it can be written, as far as can be told beforehand.
+    /// Checks that the animation can be written, as far as is known beforehand.
     ///
     /// # Errors
     /// A frame rate that the format cannot do (usage); ffmpeg is needed, and missing or
@@ -167,7 +176,7 @@ impl Animation {
             }?;
             if count.get() < reel.frames {
                 return Err(Error::failed(format!(
-                    "{}: {} of {} frames came",
+                    "{}: {} of {} frames were given",
                     path.display(),
                     count.get(),
                     reel.frames

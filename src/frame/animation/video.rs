@@ -16,7 +16,7 @@ use super::{Animation, AnimationFormat};
 const PROGRAM: &str = "ffmpeg";
 
 /// ffmpeg's name of a container, and of the encoders that will do, the best first, each with its
-/// quality: hardly to be told from the frames.
+/// quality: hardly distinguishable from the frames.
 type Codec = (&'static str, &'static [&'static str]);
 
 const H264: &[Codec] = &[

@@ -9,12 +9,15 @@ use super::pairing::displays;
 use super::spread::Spread;
 use crate::frame::Frame;
 
-/// Over the sRGB-encoded R, G and B of all pixels, in 0..1, before rounding to a file's levels:
-/// three differences a pixel, each of them one entry.
+/// The error of colours, over the sRGB-encoded R, G and B of all pixels, in 0..1, before rounding to a
+/// file's levels: three differences a pixel, each of them one entry.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ColorError {
+    /// The root mean square of the differences.
     pub rmse: f64,
+    /// The largest absolute difference.
     pub max: f64,
+    /// The 99th percentile of the absolute differences.
     pub p99: f64,
     /// −20 log₁₀ rmse: the peak is 1. +∞ for equal pictures; `null` in JSON, which has no infinity.
     #[serde(serialize_with = "null_if_infinite")]

@@ -17,11 +17,14 @@ const COMPARED: f32 = 1.0;
 const MISSED: f32 = 2.0;
 const EXTRA: f32 = 3.0;
 
-/// The three colours of pixels without difference are far from all of the palette's, and told apart
+/// The three colours of pixels without difference are far from all of the palette's, and distinguished
 /// by their lightness alone.
 impl ErrorMap {
+    /// The colour of hits that only the reference has: black.
     pub const MISSED_COLOR: Rgb = [0, 0, 0];
+    /// The colour of hits that only the picture has: yellow.
     pub const EXTRA_COLOR: Rgb = [255, 213, 0];
+    /// The colour of pixels where neither picture has anything: grey.
     pub const NOTHING_COLOR: Rgb = [119, 119, 119];
 
     /// An opaque picture of 8 bits a channel: differences from blue (−[`Self::scale`]) over light
@@ -126,7 +129,7 @@ fn state(entry: Entry) -> f32 {
     }
 }
 
-/// To single precision, finite as before.
+/// Rounds to single precision, finite as before.
 fn narrow(v: f64) -> f32 {
     v.clamp(f32::MIN.into(), f32::MAX.into()) as f32
 }

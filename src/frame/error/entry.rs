@@ -7,9 +7,9 @@ use super::spread::Spread;
 pub enum Entry {
     /// Neither picture has anything here.
     Nothing,
-    /// Only the reference has.
+    /// Only the reference has something here.
     Missed,
-    /// Only the other picture has.
+    /// Only the other picture has something here.
     Extra,
     /// The picture minus the reference; finite.
     Difference(f64),
@@ -44,13 +44,18 @@ impl Entry {
 
 /// Entries counted, and their absolute differences.
 pub(super) struct Tally {
+    /// Pixels where only the reference has something.
     pub missed: u64,
+    /// Pixels where only the other picture has something.
     pub extra: u64,
+    /// Pixels where both have something.
     pub compared: u64,
+    /// Statistics of the absolute differences; `None` if there are none.
     pub spread: Option<Spread>,
 }
 
 impl Tally {
+    /// Counts entries and gathers their differences.
     pub fn of(entries: &[Entry]) -> Self {
         let count = |which| entries.iter().filter(|&&entry| entry == which).count() as u64;
         let mut differences: Vec<f64> = entries

@@ -19,15 +19,18 @@ pub struct Scale {
     pub range_width: f64,
 }
 
-/// What can be said of a picture against its reference: each figure where both have the planes.
+/// All error figures of a picture against its reference; each is there if both have the planes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Figures {
+    /// The error of the displayed colours.
     pub color: Option<ColorError>,
     /// [`ssim()`]; `None` also where the picture is smaller than its window.
     pub ssim: Option<f64>,
     /// [`flip()`]; `None` also where the picture is larger than it takes.
     pub flip: Option<f64>,
+    /// The error of the depths, and the missed and extra hits.
     pub depth: Option<DepthError>,
+    /// The angle between the normals.
     pub normal: Option<NormalError>,
     /// `None` also where all values of the volume are equal: no share of their range can be said.
     pub value: Option<ValueError>,

@@ -8,7 +8,7 @@ use crate::frame::Frame;
 use super::pairing::displays;
 
 /// The crate refuses more than 2^34 additions; at [`DEFAULT_PPD`] a pixel takes 602.
-const MOST_PIXELS: usize = 28_000_000;
+const MAX_PIXELS: usize = 28_000_000;
 
 /// The mean over all pixels of ꟻLIP (Andersson et al., "ꟻLIP: A Difference Evaluator for
 /// Alternating Images", HPG 2020), 0 (equal) to 1, of the display planes as sRGB, at the authors'
@@ -21,7 +21,7 @@ const MOST_PIXELS: usize = 28_000_000;
 pub fn flip(reference: &Frame, frame: &Frame) -> Result<Option<f64>> {
     let (left, right) = displays(reference, frame)?;
     let size = frame.size;
-    if size.pixels() > MOST_PIXELS {
+    if size.pixels() > MAX_PIXELS {
         return Ok(None);
     }
     let srgb = |plane: &[[f32; 4]]| {

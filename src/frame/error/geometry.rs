@@ -13,6 +13,7 @@ use crate::frame::{DEPTH, Frame, NORMAL};
 /// pixels that both hit, in voxels of the smallest spacing. Serialized with both shares.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct DepthError {
+    /// Pixels that the reference hits.
     pub reference_hits: u64,
     /// Pixels that only the reference hits.
     pub missed: u64,
@@ -20,8 +21,11 @@ pub struct DepthError {
     pub extra: u64,
     /// Pixels that both hit.
     pub compared: u64,
+    /// The mean difference of the depths, voxels; `None` if no pixel was compared.
     pub mean: Option<f64>,
+    /// The 99th percentile of the differences, voxels; `None` if no pixel was compared.
     pub p99: Option<f64>,
+    /// The largest difference, voxels; `None` if no pixel was compared.
     pub max: Option<f64>,
 }
 
@@ -65,8 +69,11 @@ impl Serialize for DepthError {
 /// The angle between the normals, in degrees, over pixels where both have one (not 0).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NormalError {
+    /// Pixels where both have a normal.
     pub compared: u64,
+    /// The mean angle, degrees; `None` if no pixel was compared.
     pub mean_deg: Option<f64>,
+    /// The 99th percentile of the angles, degrees; `None` if no pixel was compared.
     pub p99_deg: Option<f64>,
 }
 
@@ -142,7 +149,7 @@ pub(super) fn normal_entries(reference: &Frame, frame: &Frame) -> Result<Vec<Ent
     left.iter().zip(right).enumerate().map(entry).collect()
 }
 
-/// From sine and cosine together: exact for small angles, where the arc cosine alone is not.
+/// The angle, from sine and cosine together: exact for small angles, where the arc cosine alone is not.
 /// Lengths may differ from 1.
 fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     let cross = [

@@ -10,7 +10,7 @@ use super::entry::Entry;
 use super::geometry::{depth_entries, normal_entries};
 use super::value::value_entries;
 
-/// What a map shows.
+/// The quantity that a map shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// The mean of the three differences of the display planes' R, G and B, each with its sign:
@@ -20,10 +20,12 @@ pub enum Quantity {
     Depth,
     /// The angle between the normals, which has no sign.
     Normal,
+    /// The difference of the value planes, which is positive where the picture's value is larger.
     Value,
 }
 
 impl Quantity {
+    /// The quantity's name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Color => "colour",
@@ -33,7 +35,7 @@ impl Quantity {
         }
     }
 
-    /// What its numbers count.
+    /// The unit of its numbers.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Color => "of white",
@@ -46,7 +48,7 @@ impl Quantity {
     /// The least that a map is coloured to: a level of 8 bits for colours, for values in a window over
     /// their whole range, and for the shading by a normal; a hundredth of a voxel. What rounding
     /// leaves is far below, and would else fill the maps of good pictures.
-    pub fn least_scale(self) -> f64 {
+    pub fn min_scale(self) -> f64 {
         const LEVEL: f64 = 1.0 / 255.0;
         match self {
             Self::Color | Self::Value => LEVEL,
@@ -55,7 +57,7 @@ impl Quantity {
         }
     }
 
-    /// Whether its numbers have a sign.
+    /// Whether the quantity has a sign.
     pub fn is_signed(self) -> bool {
         self != Self::Normal
     }
@@ -64,9 +66,11 @@ impl Quantity {
 /// The error of one quantity, pixel by pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorMap {
+    /// The quantity whose error is shown.
     pub quantity: Quantity,
+    /// The size of the two pictures.
     pub size: ImageSize,
-    /// Row 0 at the top, x fastest, in [`Quantity::unit`].
+    /// The entries, row 0 at the top, x fastest, in [`Quantity::unit`].
     pub entries: Vec<Entry>,
     /// The difference, positive or negative, that gets the palette's last colour; larger ones get
     /// it too. Positive and finite; two maps are comparable by eye if theirs is the same.
@@ -74,9 +78,8 @@ pub struct ErrorMap {
 }
 
 impl ErrorMap {
-    /// Its scale is the 99th percentile of the absolute differences that are not 0: a few
-    /// outliers do not make all else look alike, and a few differences are not lost among many
-    /// equal pixels. It is at least [`Quantity::least_scale`].
+    /// Compares the planes of a quantity. The map's scale is the 99th percentile of the absolute
+    /// differences that are not 0: a few outliers do not make all else look alike.
     ///
     /// # Errors
     /// Those of [`super::color_error`], [`super::depth_error`], [`super::normal_error`] or
@@ -99,11 +102,11 @@ impl ErrorMap {
             entries,
             scale: percentile(&mut sizes, 99)
                 .unwrap_or(0.0)
-                .max(quantity.least_scale()),
+                .max(quantity.min_scale()),
         })
     }
 
-    /// The same map, coloured to another scale.
+    /// Returns the same map, coloured to another scale.
     ///
     /// # Errors
     /// A scale that is not positive and finite.
@@ -117,8 +120,8 @@ impl ErrorMap {
         Ok(self)
     }
 
-    /// That it is not one colour to the eye: a hit is missed or added, or a difference reaches a
-    /// twentieth of the scale.
+    /// Whether the map shows a difference to the eye: a hit is missed or added, or a difference reaches
+    /// a twentieth of the scale.
     pub fn shows_something(&self) -> bool {
         self.entries.iter().any(|entry| match entry {
             Entry::Nothing => false,

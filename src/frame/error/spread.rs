@@ -5,9 +5,13 @@ use crate::frame::percentile;
 /// Statistics of finite entries that are not negative.
 #[derive(Clone, Copy)]
 pub(super) struct Spread {
+    /// The mean.
     pub mean: f64,
+    /// The root mean square.
     pub rmse: f64,
+    /// The 99th percentile.
     pub p99: f64,
+    /// The maximum.
     pub max: f64,
 }
 

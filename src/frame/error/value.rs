@@ -12,14 +12,21 @@ use crate::frame::{Frame, VALUE};
 /// share of the volume's value range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ValueError {
+    /// Pixels that both cover.
     pub compared: u64,
     /// Pixels that only the reference covers.
     pub missed: u64,
     /// Pixels that only the other picture covers.
     pub extra: u64,
+    /// The mean difference, as a share of the value range; `None` if no pixel was compared.
     pub mean: Option<f64>,
+    /// The root mean square of the differences, as a share of the value range; `None` if no pixel was
+    /// compared.
     pub rmse: Option<f64>,
+    /// The 99th percentile of the differences, as a share of the value range; `None` if no pixel was
+    /// compared.
     pub p99: Option<f64>,
+    /// The largest difference, as a share of the value range; `None` if no pixel was compared.
     pub max: Option<f64>,
 }
 

@@ -7,7 +7,7 @@ use super::{Bench, Protocol};
 pub struct Conditions {
     /// Width and height of the pictures.
     pub side_px: Option<u32>,
-    /// What the camera did while frames were timed.
+    /// How the camera moved while frames were timed.
     pub protocol: Option<Protocol>,
     /// How often each setting was timed.
     pub repeats: Option<usize>,

@@ -23,7 +23,7 @@ const UNIT_MM: f64 = 3.0;
 const NEAR: ([f64; 3], f64) = ([0.9, 0.2, 0.4], 0.1);
 const FAR: ([f64; 3], f64) = ([0.1, 0.6, 0.8], 0.6);
 
-/// What each rule is known to have; preintegration takes the field for linear, as on the ramp it is.
+/// The known order of each rule; preintegration takes the field for linear, as it is on the ramp.
 pub const ORDERS: [(QuadratureMethod, f64); 6] = [
     (QuadratureMethod::Riemann, 1.0),
     (QuadratureMethod::Midpoint, 2.0),
@@ -33,9 +33,9 @@ pub const ORDERS: [(QuadratureMethod, f64); 6] = [
     (QuadratureMethod::Preintegrated, 2.0),
 ];
 
-/// Below this rounding decides, in sums of few panels.
+/// The error below which rounding decides, in sums of few panels.
 pub const FLOOR_OF_FEW: f64 = 4e-7;
-/// And in sums of many.
+/// The rounding error of a sum of many panels.
 const FLOOR_OF_MANY: f64 = 3e-6;
 
 /// A path through one cell, and what is seen along it.
@@ -45,7 +45,7 @@ pub struct Smooth {
     toward: DVec3,
     /// The path's length in edges of the cell.
     edges: f64,
-    /// Premultiplied colour and opacity.
+    /// The exact result: premultiplied colour and opacity.
     pub reference: [f64; 4],
 }
 
@@ -78,12 +78,13 @@ impl Smooth {
     /// The field is the share of the path.
     ///
     /// # Errors
-    /// None in practice, as of the others: the volumes are sound.
+    /// The volume is refused, as it is if there is no memory for it.
     pub fn ramp() -> Result<Self> {
         Self::new("ramp", |n| (n & 1) as f32, DVec3::X, |s| s)
     }
 
-    /// Along the diagonal: the Bézier ordinates are the means of the corners with 0, 1, 2, 3 ones.
+    /// A cubic field along the diagonal: the Bézier ordinates are the means of the corners with 0, 1, 2,
+    /// 3 ones.
     ///
     /// # Errors
     /// As [`Smooth::ramp`].
@@ -98,7 +99,7 @@ impl Smooth {
         Self::new("cubic", corner, DVec3::ONE, phi)
     }
 
-    /// The same everywhere.
+    /// A medium that is the same everywhere.
     ///
     /// # Errors
     /// As [`Smooth::ramp`].
@@ -107,7 +108,7 @@ impl Smooth {
     }
 }
 
-/// Of one rule on one path, a step each.
+/// The errors of one rule on one path, one for each step size.
 pub struct Errors {
     /// The largest of the three channels.
     pub color: Vec<f64>,
@@ -216,7 +217,7 @@ pub fn colors(device: &Device, volume: &Volume, scenes: &[Scene]) -> Result<Vec<
 
 /// The largest difference of any channel.
 pub fn apart(a: [f64; 4], b: [f64; 4]) -> f64 {
-    (0..4).fold(0.0, |most, c| f64::max(most, (a[c] - b[c]).abs()))
+    (0..4).fold(0.0, |max, c| f64::max(max, (a[c] - b[c]).abs()))
 }
 
 fn transfer() -> Result<TransferFunction> {

@@ -18,7 +18,7 @@ use crate::volume::{
 pub struct Dataset {
     pub name: String,
     pub volume: Volume,
-    /// Physical.
+    /// The iso value, physical.
     pub iso: f64,
 }
 
@@ -35,7 +35,7 @@ impl Dataset {
         self.resolved(&Self::viewed(side_px, options))
     }
 
-    /// The same scene, its rays followed by a setting.
+    /// The dataset's scene, its rays followed by a setting.
     pub(super) fn scene_by(&self, side_px: u32, options: &str, setting: &Setting) -> Result<Scene> {
         let seen = Self::parsed(&Self::viewed(side_px, options))?;
         self.resolved_options(setting.over(&seen))
@@ -99,7 +99,7 @@ impl Dataset {
         self.colored_medium(side_px, &knots)
     }
 
-    /// As [`Dataset::medium`], each knot with a colour of its own, linear light.
+    /// A medium like [`Dataset::medium`] in which each knot has a colour of its own, in linear light.
     pub(super) fn colored_medium(
         &self,
         side_px: u32,
@@ -126,7 +126,7 @@ impl Dataset {
     /// directions.
     ///
     /// # Errors
-    /// None in practice: the volume is sound.
+    /// The volume is refused, as it is if there is no memory for it.
     pub(super) fn straight_vessels(radius: f64, n: usize) -> Result<Self> {
         const SIDE: u64 = 64;
         const SEED: u64 = 7;
@@ -232,6 +232,8 @@ impl Dataset {
         )
     }
 
+    /// Checks that the dataset can be measured.
+    ///
     /// # Errors
     /// Usage: all voxels are equal, so that there is nothing to measure.
     pub fn check(&self) -> Result<()> {

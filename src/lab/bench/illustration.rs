@@ -6,11 +6,11 @@ use crate::frame::Frame;
 pub struct Illustration {
     /// The section of the page in which it is shown.
     pub section: String,
-    /// What it is called there.
+    /// The label in the report.
     pub label: String,
-    /// What is seen, a line.
+    /// One line that says what the picture shows.
     pub caption: String,
-    /// With its display plane.
+    /// The picture, with its display plane.
     pub frame: Frame,
 }
 

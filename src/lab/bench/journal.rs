@@ -40,14 +40,14 @@ pub struct Journal {
     /// Locked as long as the run lasts; at its end.
     file: File,
     results: HashMap<String, Value>,
-    /// Whether there was no unfinished run here.
+    /// Whether the run is new: there was no unfinished one to resume.
     begun: bool,
 }
 
 impl Journal {
     pub const NAME: &str = "journal.jsonl";
 
-    /// Opens the journal in `folder` to resume its run; begins one where there is none, and with
+    /// Opens the journal in `folder` to resume its run; begins one if there is none, and with
     /// `restart` in any case.
     ///
     /// # Errors
@@ -132,7 +132,7 @@ impl Journal {
             .hint("begin anew with --restart")
     }
 
-    /// Whether there was no unfinished run here.
+    /// Whether the run is new: there was no unfinished one to resume.
     pub fn is_begun(&self) -> bool {
         self.begun
     }

@@ -115,7 +115,7 @@ impl Bench<'_> {
     /// it among all units of the experiment.
     ///
     /// # Errors
-    /// Those of `compute`; the disk; stopped, where the user asked for it.
+    /// Those of `compute`; the disk failed; stopped at the user's request.
     fn unit<T: Serialize + DeserializeOwned>(
         &self,
         key: &str,
@@ -243,7 +243,7 @@ pub struct Outcome {
     pub table: Table,
     /// How they were measured.
     pub conditions: Conditions,
-    /// What the table shows, a sentence each.
+    /// The findings of the table, a sentence each.
     pub findings: Vec<String>,
     /// The sections of the page before its table: a volume or a picture each.
     pub sections: Vec<Section>,
@@ -271,19 +271,21 @@ pub struct Experiment {
     pub name: &'static str,
     /// One line for the list of experiments.
     pub about: &'static str,
-    /// Whether it uses [`Bench::datasets`].
+    /// Whether the experiment uses [`Bench::datasets`].
     pub takes_volumes: bool,
-    /// Whether it uses [`Bench::rays`] and [`Bench::seed`].
+    /// Whether the experiment uses [`Bench::rays`] and [`Bench::seed`].
     pub counts_rays: bool,
-    /// Whether it uses the protocol under which frames are timed.
+    /// Whether the experiment uses the protocol under which frames are timed.
     pub times_frames: bool,
-    /// Whether it uses [`Bench::frames`] and [`Bench::peer`]: it times whole frames beside another
-    /// program's.
+    /// Whether the experiment uses [`Bench::frames`] and [`Bench::peer`]: it times whole frames beside
+    /// another program's.
     pub takes_peer: bool,
     pub run: fn(&Bench) -> Result<Outcome>,
 }
 
 impl Experiment {
+    /// Finds an experiment by its name.
+    ///
     /// # Errors
     /// Usage: there is no such experiment; the error lists all.
     pub fn named(name: &str) -> Result<&'static Self> {

@@ -8,20 +8,20 @@ use crate::scene::Scene;
 
 use super::Preset;
 
-/// `--protocol`.
+/// How the camera moves while frames are timed (`--protocol`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Protocol {
-    /// It stays where it is.
+    /// The camera stays where it is.
     #[default]
     Static,
-    /// It goes once around the volume, a frame a place.
+    /// The camera goes once around the volume, a frame a place.
     Orbit,
 }
 
 impl Protocol {
     pub const ALL: [Self; 2] = [Self::Static, Self::Orbit];
 
-    /// What the user types.
+    /// The protocol's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Static => "static",
@@ -38,7 +38,7 @@ impl Protocol {
         }
     }
 
-    /// What times under it are, for the findings.
+    /// A description of times under this protocol, for the findings.
     pub(super) fn description(self, preset: Preset) -> String {
         let frames = self.frames(preset);
         let of = match self {
@@ -50,7 +50,7 @@ impl Protocol {
         format!("the minimum, the median and the 95th percentile of {of}")
     }
 
-    /// How far the camera has gone in a frame, degrees.
+    /// The angle by which the camera has turned in a frame, degrees.
     pub(super) fn azimuth_deg(self, preset: Preset, frame: usize) -> f64 {
         match self {
             Self::Static => 0.0,

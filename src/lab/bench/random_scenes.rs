@@ -119,7 +119,7 @@ fn transfer_function(rng: &mut Rng, subject: &Subject) -> String {
 /// A random bound of a metric, from what only the finest settings keep to what nearly all do.
 ///
 /// # Errors
-/// None in practice: the bounds are in the metrics' domains.
+/// The bound is outside the metric's domain, which no number gives.
 pub fn bound(number: u64, metric: ErrorMetric) -> Result<ErrorBound> {
     let mut rng = Rng::new(number);
     let bound = match metric {
@@ -134,7 +134,7 @@ pub fn bound(number: u64, metric: ErrorMetric) -> Result<ErrorBound> {
     ErrorBound::new(metric, bound)
 }
 
-/// What a scene's defaults need to know of a volume.
+/// The properties of a volume from which a scene's defaults are made.
 pub fn subject(volume: &Volume) -> Subject {
     let (center_world, radius_mm) = volume.bounding_sphere();
     let range = volume.range();
@@ -149,8 +149,10 @@ pub fn subject(volume: &Volume) -> Subject {
     }
 }
 
+/// Parses the text of a random scene.
+///
 /// # Errors
-/// None in practice: the texts are sound.
+/// The text does not parse, or its options contradict each other.
 pub fn options(text: &str) -> Result<SceneOptions> {
     SceneOptions::parse(text, "the experiment's scene")?.checked()
 }

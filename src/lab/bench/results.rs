@@ -31,7 +31,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Makes the folder where there is none.
+    /// Creates the folder if it does not exist.
     ///
     /// # Errors
     /// It cannot be made, or takes no files.

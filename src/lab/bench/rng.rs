@@ -20,7 +20,7 @@ impl Rng {
         (self.bits() % u64::from(n.max(1))) as u32
     }
 
-    /// In [0, 1).
+    /// A random number in [0, 1).
     pub(super) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -34,7 +34,7 @@ impl Rng {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// Once in `n` times.
+    /// True once in `n` times.
     pub(super) fn one_in(&mut self, n: u32) -> bool {
         self.below(n) == 0
     }
@@ -43,7 +43,7 @@ impl Rng {
         if self.one_in(2) { 1.0 } else { -1.0 }
     }
 
-    /// Unit length, uniform on the sphere.
+    /// A unit vector, uniform on the sphere.
     pub(super) fn direction(&mut self) -> DVec3 {
         loop {
             let v = DVec3::from_array([(); 3].map(|()| self.between(-1.0, 1.0)));

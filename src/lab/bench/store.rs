@@ -28,8 +28,8 @@ pub struct Store {
 }
 
 impl Store {
-    /// Makes the folder where there is none. The work ends between two units, or in one, when
-    /// [`stop::asked`] says so. What another run has left there is removed.
+    /// Creates the folder if it does not exist. The work ends between two units, or in one, when
+    /// [`stop::requested`] says so. What another run has left there is removed.
     ///
     /// # Errors
     /// The folder cannot be made, takes no files, or holds what another run has left unfinished.
@@ -85,7 +85,7 @@ impl Store {
     /// # Errors
     /// It is.
     pub(super) fn check_stop(&self) -> Result<()> {
-        if !stop::asked() {
+        if !stop::requested() {
             return Ok(());
         }
         let units = match self.journal.borrow().units() {

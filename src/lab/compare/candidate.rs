@@ -20,7 +20,7 @@ pub enum Candidate {
     Peer {
         peer: usize,
         setting: String,
-        /// What it has prepared, once its picture was requested.
+        /// The peer's prepared scene, once its picture was requested.
         scene: Option<PeerScene>,
     },
 }

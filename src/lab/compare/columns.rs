@@ -178,7 +178,7 @@ const SSIM: Column = ("ssim", "SSIM", Shown::Fixed(5), |row| {
 const FLIP: Column = ("flip", "FLIP", Shown::Short, |row| {
     row.error.and_then(|e| e.flip).into()
 });
-/// By which surfaces are ranked, in the findings and plots too.
+/// The share of wrong hits, by which surfaces are ranked, in the findings and plots too.
 const WRONG_HITS: Column = (
     "wrong_hits_share",
     "missed or added, %",
@@ -215,14 +215,14 @@ const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixe
 const NODES_PER_RAY: Column = ("nodes_per_ray", "nodes a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.nodes_per_ray()).into()
 });
-/// Only where there is one.
+/// The remark on a row, if there is one.
 const REMARK: Column = ("remark", "remark", Shown::Short, |row| {
     row.remark().map(str::to_owned).into()
 });
-/// For people, the renderer only where it is another's.
+/// The setting's name for people, with the renderer only if it is another's.
 const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into());
 
-/// What is read of a mode: of a surface its hits, of a projection its values.
+/// The columns for surfaces, which show their hits; for projections, their values.
 const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 

@@ -8,7 +8,7 @@ use crate::options::{Part, SceneFile, SceneOptions, Setting};
 use crate::scene::Mode;
 use crate::scene::toml_error::located;
 
-/// What a file of settings says.
+/// The contents of a file of settings.
 ///
 /// ```toml
 /// [[setting]]
@@ -22,7 +22,7 @@ pub struct Configs {
     settings: Vec<Config>,
 }
 
-/// More are no comparison that anyone waits for.
+/// The most settings: more would take too long to compare.
 const MAX_SETTINGS: usize = 256;
 
 const HINT: &str = "write [[setting]], a name, and keys such as step = 0.5";
@@ -50,21 +50,21 @@ impl Configs {
             .map_err(|error: toml::de::Error| located(&error, text, place).hint(HINT))?;
         let wrong = |sentence: String| Error::usage(sentence).hint(HINT).at(place);
         if let Some(key) = table.keys().find(|key| *key != "setting") {
-            return Err(wrong(format!("'{key}' is no part of a file of settings")));
+            return Err(wrong(format!("'{key}' is not a key of a file of settings")));
         }
         let Some(toml::Value::Array(entries)) = table.get("setting") else {
             return Err(wrong("there is no [[setting]]".into()));
         };
         if entries.len() > MAX_SETTINGS {
             return Err(wrong(format!(
-                "{} settings, of which {MAX_SETTINGS} are the most",
+                "{} settings: there may be at most {MAX_SETTINGS}",
                 entries.len()
             )));
         }
         let mut settings: Vec<Config> = Vec::new();
         for (at, entry) in entries.iter().enumerate() {
             let toml::Value::Table(entry) = entry else {
-                return Err(wrong(format!("setting {} is no table", at + 1)));
+                return Err(wrong(format!("setting {} is not a table", at + 1)));
             };
             let name = name_of(entry, at + 1).map_err(|error| error.at(place))?;
             if settings.iter().any(|other| other.setting.name() == name) {
@@ -102,7 +102,7 @@ impl Configs {
         Some(Mode::ALL.into_iter().filter(is_named).collect())
     }
 
-    /// Those for a mode, in the file's order.
+    /// The settings for a mode, in the file's order.
     pub fn of_mode(&self, mode: Mode) -> Vec<Setting> {
         let suits = |config: &&Config| {
             let modes = config.modes.as_ref();
@@ -187,9 +187,9 @@ mod tests {
                 "file:5: 'stp'",
             ),
             ("", "there is no [[setting]]"),
-            ("[camera]\nfov = 3", "'camera' is no part"),
+            ("[camera]\nfov = 3", "'camera' is not a key"),
             ("setting = 3", "there is no [[setting]]"),
-            ("setting = [3]", "setting 1 is no table"),
+            ("setting = [3]", "setting 1 is not a table"),
             ("[[setting]]\nstep = 2", "setting 1 has no name"),
             ("[[setting]]\nname = 'a'\nmodes = 'iso'", "modes is a list"),
             (
@@ -198,7 +198,7 @@ mod tests {
             ),
             (
                 "[[setting]]\nname = 'a'\niso = 3",
-                "'iso' says what is seen",
+                "'iso' changes what is shown",
             ),
             ("[[setting]]\nname = 'a'\nstp = 3", "stp"),
             (

@@ -37,7 +37,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Makes it where there is none.
+    /// Creates the folder if it does not exist.
     ///
     /// # Errors
     /// The disk.
@@ -52,12 +52,12 @@ impl Folder {
         self.path.join("results.json")
     }
 
-    /// The rows' figures.
+    /// The path of the rows' figures.
     pub fn csv(&self) -> PathBuf {
         self.path.join("results.csv")
     }
 
-    /// The page.
+    /// The path of the report page.
     pub fn report(&self) -> PathBuf {
         self.path.join("report.html")
     }
@@ -117,7 +117,7 @@ impl Folder {
     /// The disk.
     pub(super) fn write_results(&self, about: &Value, known: &Compared) -> Result<()> {
         let mut document = about.clone();
-        let json = |cause| Error::failed(format!("the results are no JSON: {cause}"));
+        let json = |cause| Error::failed(format!("the results are not JSON: {cause}"));
         document["scenes"] = serde_json::to_value(&known.scenes).map_err(json)?;
         document["max_error"] = serde_json::to_value(&known.choices).map_err(json)?;
         document["findings"] = serde_json::to_value(&known.findings).map_err(json)?;

@@ -45,10 +45,10 @@ use pictures::Metadata;
 /// The name of this renderer in rows.
 const OURS: &str = "angioray";
 
-/// What is compared.
+/// A comparison: its volume, its scenes and its settings.
 pub struct Comparison<'a> {
     pub volume: &'a Volume,
-    /// What a mode's defaults need to know of the volume.
+    /// The properties of the volume from which a mode's defaults are made.
     pub subject: Subject,
     /// Where the reference's pictures come from.
     pub reference: ReferenceCache<'a>,
@@ -57,7 +57,7 @@ pub struct Comparison<'a> {
     pub repeats: usize,
     /// Made, and cleared of an earlier comparison, once nothing can be refused any more.
     pub folder: Folder,
-    /// What the results hold beside the rows, for programs.
+    /// Facts that the results hold beside the rows, for programs.
     pub about: Value,
     pub progress: &'a dyn Progress,
 }
@@ -70,9 +70,9 @@ pub struct Compared {
     pub sections: Vec<Section>,
     /// The findings, a sentence each.
     pub findings: Vec<String>,
-    /// What is seen in each mode.
+    /// The options of the scene of each mode.
     pub scenes: BTreeMap<String, SceneOptions>,
-    /// What an error bound chose in each mode that has its metric.
+    /// The choice for an error bound in each mode that has its metric.
     pub choices: BTreeMap<String, ToleranceStats>,
 }
 

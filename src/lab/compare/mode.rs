@@ -35,10 +35,10 @@ impl ModeSettings {
     }
 
     /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
-    /// and how by each of `settings`, which are the built-in ones where there are none.
+    /// and how by each of `settings`, which are the built-in ones if none are given.
     ///
     /// # Errors
-    /// Usage: the options contradict each other, or a setting does not go with the mode.
+    /// Usage: the options contradict each other, or a setting cannot be combined with the mode.
     pub fn new(
         mode: Mode,
         base: &SceneOptions,
@@ -89,7 +89,7 @@ impl ModeSettings {
     /// Adds one setting.
     ///
     /// # Errors
-    /// Usage: it does not go with the mode.
+    /// Usage: it cannot be combined with the mode.
     pub fn add(&mut self, setting: Setting, subject: &Subject) -> Result<()> {
         let options = setting.over(&self.resolved.options).checked();
         let resolved = options.and_then(|options| options.resolve(subject));

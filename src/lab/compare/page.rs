@@ -27,8 +27,8 @@ pub fn section(mode: Mode, about: String, rows: &[Row], gallery: Gallery) -> Sec
     }
 }
 
-/// Of the pictured rows and their error maps, the one to open on beside the reference, by its number: the
-/// fastest whose map shows something, else the fastest.
+/// The number of the row to open on beside the reference, from the pictured rows and their error maps:
+/// the fastest whose map shows something, else the fastest.
 pub fn opening_row<'a>(pictured: impl Iterator<Item = (&'a Row, &'a ErrorMap)>) -> Option<usize> {
     let rank = |(at, (row, map)): (usize, (&Row, &ErrorMap))| {
         let ms = row.frame_ms().unwrap_or(f64::INFINITY);
@@ -191,7 +191,7 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: worth their time, nothing less wrong being as fast, with ms and {} ({}): \
+            "{mode}: on the Pareto front, nothing more accurate being as fast, with ms and {} ({}): \
              {settings}",
             metric.title, metric.unit
         )

@@ -20,7 +20,7 @@ pub struct Written {
     /// The names within the folder.
     pub png: String,
     pub exr: String,
-    /// What writing the PNG took, ms.
+    /// Time to write the PNG, ms.
     pub encode_ms: f64,
 }
 
@@ -45,7 +45,7 @@ pub fn write(folder: &Folder, name: &str, frame: &Frame, metadata: &Metadata) ->
     })
 }
 
-/// Those whose planes are there.
+/// The layers whose planes are there.
 fn layers_of(frame: &Frame) -> Vec<Layer> {
     frame.layers.iter().map(|(layer, _)| layer).collect()
 }
@@ -75,7 +75,7 @@ pub fn error_map(
 /// then equal errors, and neither the best nor the worst setting makes the others look all alike.
 ///
 /// # Errors
-/// None in practice: their own scales are positive and finite.
+/// A map's own scale is not positive and finite, which [`ErrorMap`] rules out.
 pub fn to_one_scale(maps: Vec<ErrorMap>) -> Result<Vec<ErrorMap>> {
     let scales: Vec<(Quantity, f64)> = maps.iter().map(|map| (map.quantity, map.scale)).collect();
     let common = |quantity| {

@@ -19,21 +19,21 @@ pub struct Row {
     pub renderer: String,
     /// The flags of the setting; empty of a peer.
     pub flags: String,
-    /// Its method of following rays: points of one family have one colour in plots.
+    /// The family of the setting: points of one family have one colour in plots.
     pub family: String,
     /// Why there is no picture.
     pub failure: Option<String>,
-    /// In what a peer shows something else than the scene says.
+    /// How a peer's picture differs from what the scene says.
     pub note: Option<String>,
     pub error: Option<Figures>,
     pub times_ms: RowTimes,
-    /// Of the frame that is nearest to the median, in launch order.
+    /// The passes of the frame that is nearest to the median, in launch order.
     pub passes: Vec<PassMs>,
     pub counts: Option<Counts>,
     pub memory: Option<RowMemory>,
     /// The keys of the errors by which the setting is on the Pareto front of its mode.
     pub on_front: Vec<&'static str>,
-    /// Beside the results.
+    /// The row's files beside the results.
     pub files: Option<RowFiles>,
 }
 
@@ -41,12 +41,12 @@ pub struct Row {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct RowTimes {
     pub repeats: usize,
-    /// From the camera set to pixels that the host can read.
+    /// The time from the camera set to pixels that the host can read, ms.
     pub frame: Option<Spread>,
     /// The processor time of all threads of the program that drew it, the median; unknown on some
     /// systems.
     pub processor: Option<f64>,
-    /// From the first launch to the last one's end, on the device's clock.
+    /// The time from the first launch to the last one's end, ms on the device's clock.
     pub render: Option<Spread>,
     /// Uploading the volume: with the first picture of all, then 0.
     pub upload: Option<f64>,
@@ -56,13 +56,13 @@ pub struct RowTimes {
     pub classify: Option<f64>,
     /// Computing and uploading precomputed gradients.
     pub gradient: Option<f64>,
-    /// What a peer does once for the scene.
+    /// Time of what a peer does once for the scene, ms.
     pub prepare: Option<f64>,
-    /// Writing the PNG.
+    /// Time to write the PNG, ms.
     pub encode: Option<f64>,
 }
 
-/// Of the repeats.
+/// The spread of the repeats' times.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
     pub median: f64,
@@ -93,8 +93,8 @@ pub struct RowMemory {
     /// The most that the process held, the rows before this one included; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
     pub device_bytes: u64,
-    /// From host to device for this picture; with the first one of all (which may be one that an error
-    /// bound was chosen by), the volume too.
+    /// The bytes uploaded from host to device for this picture; with the first one of all (which may be
+    /// one that an error bound was chosen by), the volume too.
     pub uploaded_bytes: u64,
 }
 

@@ -8,7 +8,7 @@ use crate::volume::{Volume, write_nrrd, write_nrrd_of};
 /// A hard case: one volume, or several of one kind.
 #[derive(Debug)]
 pub struct HardCase {
-    /// What the user types.
+    /// The case's name, as users write it.
     pub name: &'static str,
     /// The kind of difficulty that it belongs to, 1 to 26: rays to 6, isosurface to 15,
     /// emission and absorption to 21, volumes to 26.
@@ -71,14 +71,14 @@ impl HardCase {
         self.members.len().max(1)
     }
 
-    /// Its volume number `member`, from 0 to [`HardCase::count`].
+    /// The case's volume number `member`, from 0 to [`HardCase::count`].
     ///
     /// # Errors
     /// Usage: there is no such member. Failed: there is not enough memory.
     pub fn volume(&self, member: usize) -> Result<HardVolume> {
         if member >= self.count() {
             return Err(Error::usage(format!(
-                "the hard case {} has {} volumes, there is no number {member}",
+                "the hard case {} has {} volumes, so there is no number {member}",
                 self.name,
                 self.count()
             )));

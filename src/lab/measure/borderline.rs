@@ -23,12 +23,12 @@ const RESOLUTION_VOXELS: f64 = JUMP_VOXELS / 5.0;
 /// Depths of exact casting farther apart than this, in voxels, need a verdict.
 const CLOSE_VOXELS: f64 = 1e-4;
 
-/// Which depths need a verdict.
+/// How near depths must be to need no verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Closeness {
-    /// Of exact casting: all that differ, the kind of the hit taken from the frame.
+    /// All depths that differ, for exact casting; the kind of the hit is taken from the frame.
     Exact,
-    /// Of fixed steps: those of another place, whatever the kind of the hit.
+    /// Depths of another place, for fixed steps, whatever the kind of the hit.
     Jumps,
 }
 
@@ -61,7 +61,7 @@ pub struct Borderline<'a> {
 }
 
 impl<'a> Borderline<'a> {
-    /// For pictures of `scene`.
+    /// Prepares the comparison of pictures of `scene`.
     ///
     /// # Errors
     /// As [`HitJudge::new`].

@@ -79,17 +79,17 @@ pub fn evaluate_pixels(
     })
 }
 
-/// What one picture for display took.
+/// The time of one picture for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTime {
-    /// From the camera set to pixels that the host can read, on the host's clock.
+    /// The time from the camera set to pixels that the host can read, ms on the host's clock.
     pub frame_ms: f64,
     /// The processor time of all threads of the program that drew it; where the device is the processor
     /// itself, drawing included. Unknown on some systems.
     pub processor_ms: Option<f64>,
-    /// From the first launch to the last one's end, on the device's clock.
+    /// The time from the first launch to the last one's end, ms on the device's clock.
     pub render_ms: f64,
-    /// On the device's clock.
+    /// The time of each pass, on the device's clock.
     pub passes: Vec<PassTime>,
 }
 

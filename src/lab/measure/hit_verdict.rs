@@ -6,23 +6,23 @@ use glam::DVec3;
 
 use crate::error::Result;
 use crate::frame::Kind;
-use crate::reference::{Sight, Tracer};
+use crate::reference::{RayResult, Tracer};
 use crate::scene::{Picture, Ray, Scene};
 use crate::volume::Volume;
 
-/// What a renderer says that a ray meets first.
+/// A renderer's answer: the first thing that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     pub kind: Kind,
-    /// mm from the ray's origin; +∞: nothing.
+    /// Distance from the ray's origin, mm; +∞: nothing.
     pub depth_mm: f64,
 }
 
-impl From<&Sight> for Answer {
-    fn from(sight: &Sight) -> Self {
+impl From<&RayResult> for Answer {
+    fn from(result: &RayResult) -> Self {
         Self {
-            kind: sight.kind,
-            depth_mm: sight.depth_mm,
+            kind: result.kind,
+            depth_mm: result.depth_mm,
         }
     }
 }
@@ -62,6 +62,8 @@ impl<'a> HitJudge<'a> {
     /// value range: what single precision leaves of a field's value.
     pub const NEAR_VALUE: f64 = 2e-6;
 
+    /// Prepares the reference for a scene.
+    ///
     /// # Errors
     /// As [`Tracer::new`].
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
@@ -119,7 +121,7 @@ impl<'a> HitJudge<'a> {
     }
 
     /// Whether the reference gives `answer`, to within `max_apart` voxels, for a ray and an iso value
-    /// so near that they cannot be told from these.
+    /// so near that they cannot be distinguished from these.
     fn is_borderline(
         &self,
         ray: Ray,
@@ -342,7 +344,7 @@ impl<'a> HitJudge<'a> {
     }
 }
 
-/// What the reference answers nearby, none of it the answer in question.
+/// The reference's answers nearby, not counting the answer in question.
 #[derive(Default)]
 struct Nearby {
     /// The change whose answer lies nearest before the answer in question.
@@ -356,9 +358,9 @@ struct Nearby {
 /// A small change of a ray and of the iso value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Off {
-    /// World space, mm.
+    /// The offset of the ray, world space, mm.
     by: DVec3,
-    /// Physical.
+    /// The iso value, physical.
     iso: f64,
 }
 

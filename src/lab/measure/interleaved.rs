@@ -8,7 +8,7 @@ use crate::frame::{median, percentile};
 /// The times of the repeats of one setting.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Times {
-    /// One a round, ms.
+    /// The times, one a round, ms.
     rounds: Vec<f64>,
 }
 
@@ -23,7 +23,7 @@ impl Times {
         self.rounds.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// What half of the rounds do not exceed, ms.
+    /// The median of the rounds, ms.
     pub fn median_ms(&self) -> f64 {
         median_of(self.rounds.iter().copied())
     }

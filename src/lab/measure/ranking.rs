@@ -6,9 +6,9 @@ use crate::scene::Mode;
 /// A metric that says in one number how wrong a picture is; 0 is right.
 #[derive(Debug, Clone, Copy)]
 pub struct RankingMetric {
-    /// For programs.
+    /// The metric's key, for programs.
     pub key: &'static str,
-    /// For people, its unit apart.
+    /// The metric's title, for people; its unit is separate.
     pub title: &'static str,
     /// Empty where the figure has none.
     pub unit: &'static str,

@@ -12,9 +12,9 @@ use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
+use crate::cache::{self, CacheFolder, mark_used};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
-use crate::kept::{self, Kept, asked_for};
 use crate::progress::Progress;
 use crate::reference;
 use crate::scene::Scene;
@@ -30,7 +30,7 @@ pub struct ReferenceCache<'a> {
 
 /// A folder of pictures of one volume.
 struct Cache {
-    folder: Kept,
+    folder: CacheFolder,
     /// The hash of program and volume.
     hasher: blake3::Hasher,
 }
@@ -38,14 +38,14 @@ struct Cache {
 /// A reference picture.
 pub struct ReferenceFrame {
     pub frame: Frame,
-    /// Whether it had to be computed.
+    /// Whether the reference had to be computed.
     pub computed: bool,
     /// Why it could not be cached for the next time.
     pub not_cached: Option<Error>,
 }
 
 impl<'a> ReferenceCache<'a> {
-    /// Without a folder: every picture is computed.
+    /// A cache without a folder: every picture is computed.
     pub fn uncached(volume: &'a Volume) -> Self {
         Self {
             volume,
@@ -53,13 +53,13 @@ impl<'a> ReferenceCache<'a> {
         }
     }
 
-    /// Pictures are cached in `folder`, which is made where there is none; those that were not used for
+    /// Pictures are cached in `folder`, which is created if it does not exist; those that were not used for
     /// thirty days, such as those of older programs, are removed from it.
     ///
     /// # Errors
     /// The folder cannot be made; the program cannot read its own file.
     pub fn in_folder(folder: &Path, volume: &'a Volume) -> Result<Self> {
-        let folder = Kept::in_folder(folder, EXTENSION)?;
+        let folder = CacheFolder::in_folder(folder, EXTENSION)?;
         let mut hasher = blake3::Hasher::new();
         hash_program(&mut hasher)?;
         hasher.update(volume.content_hash().as_bytes());
@@ -114,7 +114,7 @@ const EXTENSION: &str = "frame";
 /// Writes the colour and then the other planes, zlib-compressed (whose checksum shows a torn file).
 fn write(path: &Path, frame: &Frame) -> Result<()> {
     let failed = |cause| Error::writing(path, "write", &cause);
-    kept::write(path, |out| {
+    cache::write(path, |out| {
         let mut out = ZlibEncoder::new(out, Compression::fast());
         let mut frame = frame.clone();
         for plane in frame.bytes_mut() {
@@ -125,16 +125,16 @@ fn write(path: &Path, frame: &Frame) -> Result<()> {
     })
 }
 
-/// The picture cached in `path`; `None` where there is none that is whole.
+/// The picture cached in `path`; `None` if there is no complete one.
 fn read(path: &Path, scene: &Scene, wanted: Wanted) -> Option<Frame> {
-    let mut file = ZlibDecoder::new(kept::open(path).ok()?);
+    let mut file = ZlibDecoder::new(cache::open(path).ok()?);
     let mut frame = Frame::blank(scene.size, wanted).ok()?;
     for plane in frame.bytes_mut() {
         file.read_exact(plane).ok()?;
     }
     let at_end = file.read(&mut [0]).ok()? == 0;
     if at_end {
-        asked_for(path);
+        mark_used(path);
     }
     at_end.then_some(frame)
 }

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::options::Setting;
 use crate::scene::Mode;
 
-/// Voxels, coarse to fine.
+/// The steps, in voxels, coarse to fine.
 const STEPS: [&str; 4] = ["2", "1", "0.5", "0.25"];
 const REFINERS: [&str; 5] = [
     "regula-falsi:5",
@@ -22,24 +22,24 @@ const RULES: [&str; 6] = [
     "romberg",
     "preintegrated",
 ];
-/// Of adaptive quadrature, in linear light.
+/// The error bounds of adaptive quadrature, in linear light.
 const BOUNDS: [&str; 4] = [
     "adaptive:1e-2",
     "adaptive:1e-3",
     "adaptive:1e-4",
     "adaptive:1e-5",
 ];
-/// Beside the default one.
+/// The traversals beside the default one.
 const TRAVERSALS: [&str; 4] = ["uniform", "kd-restart", "hierarchical", "revelles"];
 
 const EXACT: (&str, &str) = ("sampling", "exact");
 const PLAIN: (&str, &str) = ("probe", "off");
 
-/// What `compare` shows of a mode: the exact cast, fixed steps as they are by default, and plain
-/// ones as in the papers; of emission and absorption, its rules.
+/// The settings that `compare` shows of a mode: the exact cast, fixed steps as they are by default, and
+/// plain ones as in the papers; for emission and absorption, its rules.
 ///
 /// # Errors
-/// None in practice: the texts are sound.
+/// A text of this module does not parse, which tests rule out.
 pub fn built_in(mode: Mode) -> Result<Vec<Setting>> {
     let steps = STEPS.map(|step| Keys::of(&[("step", step)]));
     let mut casts = Vec::new();
@@ -80,7 +80,7 @@ pub fn built_in(mode: Mode) -> Result<Vec<Setting>> {
 /// all of them.
 ///
 /// # Errors
-/// None in practice: the texts are sound.
+/// A text of this module does not parse, which tests rule out.
 pub fn grid(mode: Mode, whole: bool) -> Result<Vec<Setting>> {
     let casts = casts(mode);
     let crossed = if whole { casts.clone() } else { typical(mode) };

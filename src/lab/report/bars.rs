@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::content::{Bar, Bars};
 use super::figure::figure;
 
-/// As many colours as the style knows; further parts begin again.
+/// The number of colours that the style defines; further parts begin again.
 const COLORS: usize = 8;
 
 /// The part of the longest bar from which a figure of so many characters fits into it, on a phone too:

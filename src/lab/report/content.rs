@@ -9,11 +9,11 @@ pub struct Report {
     pub title: String,
     /// A sentence or two for somebody who knows nothing of this: what is seen here, how to read it.
     pub summary: String,
-    /// What was run, as name and value: volume, size, device, driver, versions, protocol.
+    /// Facts about the run, as name and value: volume, size, device, driver, versions, protocol.
     pub facts: Vec<(String, String)>,
     /// The command line that makes this page again.
     pub command: String,
-    /// What came out, a sentence each.
+    /// The findings, a sentence each.
     pub findings: Vec<String>,
     /// One per mode, or per table.
     pub sections: Vec<Section>,
@@ -59,11 +59,11 @@ pub struct PairSetting {
 /// A picture that a gallery of the same report shows.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PairedPicture {
-    /// What distinguishes it from the others of its setting: `Isosurface`.
+    /// A label that distinguishes the picture from the others of its setting: `Isosurface`.
     pub mode: String,
     /// The number of the section in the report.
     pub section: usize,
-    /// Its label in that section's gallery.
+    /// The picture's label in that section's gallery.
     pub label: String,
 }
 
@@ -85,7 +85,7 @@ pub struct Picture {
 pub struct ErrorMap {
     /// The bytes of a PNG file of the picture's size.
     pub png: Vec<u8>,
-    /// What is shown: `depth error`.
+    /// The quantity that is shown: `depth error`.
     pub label: String,
     /// `voxels`; empty where the figure has none.
     pub unit: String,
@@ -136,10 +136,10 @@ pub struct Scatter {
     pub points: Vec<Point>,
 }
 
-/// What an axis measures.
+/// The quantity along an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
-    /// `time`.
+    /// The name of what the axis shows, such as `time`.
     pub label: String,
     /// `ms`; empty where the figure has none.
     pub unit: String,
@@ -153,7 +153,7 @@ pub struct Point {
     pub group: String,
     pub x: f64,
     pub y: f64,
-    /// It is on the Pareto front: nothing less wrong is as fast, times within 10 % counting as equal.
+    /// It is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
     pub on_front: bool,
     /// More figures, as name and value, shown when the point is pointed at.
     pub details: Vec<(String, String)>,
@@ -163,7 +163,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
     pub title: String,
-    /// `ms`.
+    /// The unit, such as `ms`.
     pub unit: String,
     pub rows: Vec<Bar>,
 }

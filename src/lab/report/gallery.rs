@@ -103,7 +103,7 @@ fn embedded(png: &[u8], name: &str) -> Result<Embedded> {
     let reader = png::Decoder::new(Cursor::new(png)).read_info();
     let reader = reader.map_err(|cause| {
         Error::failed(format!(
-            "the report's picture \"{name}\" is no PNG: {cause}"
+            "the report's picture \"{name}\" is not a PNG: {cause}"
         ))
     })?;
     let (width, height) = reader.info().size();

@@ -11,7 +11,8 @@ use crate::VERSION;
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 
-/// Nothing is fetched from anywhere: images are in the file, style and script too.
+/// The page's content security policy: nothing is fetched from anywhere, as images, style and scripts
+/// are in the file.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
@@ -24,14 +25,14 @@ const STYLES: [&str; 3] = [
 /// Runs before anything that could fail.
 const FAULTS: &str = include_str!("page/faults.js");
 
-/// What the scripts after it share.
+/// The scripts that those after them share.
 const SHARED: [&str; 3] = [
     include_str!("page/dom.js"),
     include_str!("page/axis.js"),
     include_str!("page/magnified.js"),
 ];
 
-/// In the order in which they run, each with names of its own.
+/// The scripts in the order in which they run, each with names of its own.
 const SCRIPTS: [&str; 5] = [
     include_str!("page/viewer.js"),
     include_str!("page/pairs.js"),
@@ -107,7 +108,7 @@ impl Report {
                 div.intro {
                     @if !self.findings.is_empty() {
                         section.card.findings {
-                            h2 { "What came out" }
+                            h2 { "Findings" }
                             ul { @for finding in &self.findings { li { (finding) } } }
                         }
                     }

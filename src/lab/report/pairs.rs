@@ -8,7 +8,8 @@ use super::content::{Pairs, Section};
 use super::scatter::in_script;
 use crate::error::{Error, Result};
 
-/// Of a page with these sections; nothing where no two of them have a picture in common.
+/// The comparison of pictures of a page with these sections; empty if no two of them have a picture in
+/// common.
 pub(super) fn html(pairs: &Pairs, sections: &[Section]) -> Result<Markup> {
     for shown in pairs.settings.iter().flat_map(|setting| &setting.pictures) {
         let gallery = sections

@@ -65,7 +65,8 @@ fn with_name_alone(word: &str) -> String {
     }
 }
 
-/// That a value names a file in a folder; a fraction such as `max:1/255` has its slash between digits.
+/// Whether a value names a file in a folder; a fraction such as `max:1/255` has its slash between
+/// digits.
 fn is_path(value: &str) -> bool {
     let bytes = value.as_bytes();
     let is_digit = |at: Option<usize>| {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::figure::figure;
 
-/// What stands in one place of a table; as JSON a string, a number or `null`.
+/// The contents of one cell of a table; as JSON a string, a number or `null`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Cell {
@@ -51,12 +51,12 @@ impl<T: Into<Self>> From<Option<T>> for Cell {
 /// How a column's numbers are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
-    /// With so many digits behind the point.
+    /// A fixed number of digits behind the point.
     Fixed(usize),
     /// A share, times 100, with so many digits behind the point; one too small for them as a
     /// [`figure`].
     Percent(usize),
-    /// As a [`figure`].
+    /// Three significant digits, as [`figure`] writes them.
     Short,
 }
 
@@ -116,8 +116,8 @@ fn csv_text(text: &str) -> String {
     }
 }
 
-/// That a spreadsheet could take text for a formula, by how it begins (OWASP, CSV injection; the last
-/// four are the same signs in full width). A number is none, whatever its sign.
+/// Whether a spreadsheet could take text for a formula, by how it begins (OWASP, CSV injection; the last
+/// four are the same signs in full width). A number is not one, whatever its sign.
 fn is_formula_like(text: &str) -> bool {
     const BEGINNINGS: [char; 11] = ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
     text.starts_with(BEGINNINGS) && text.parse::<f64>().is_err()
@@ -141,7 +141,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of columns given as key, title and form.
+    /// Makes an empty table of columns given as key, title and form.
     pub fn new(columns: &[(&'static str, &'static str, Shown)]) -> Self {
         let column = |&(key, title, shown)| Column { key, title, shown };
         Self {
@@ -167,7 +167,7 @@ impl Table {
         &self.rows
     }
 
-    /// For reading, a line of Markdown each; numbers rounded as their columns say.
+    /// The table for reading, a line of Markdown each; numbers rounded as their columns say.
     pub fn markdown(&self) -> Vec<String> {
         let line = |cells: &mut dyn Iterator<Item = String>| {
             let cells = cells.map(|cell| format!(" {cell} |"));
@@ -200,8 +200,8 @@ impl Table {
         named.collect()
     }
 
-    /// For a page, about `what`, under so many plots with a front; rounded like [`Self::markdown`],
-    /// with the unrounded figures to sort by and, as CSV, to take along.
+    /// The table for a page, about `what`, under so many plots with a front; rounded like
+    /// [`Self::markdown`], with the unrounded figures to sort by and, as CSV, to take along.
     pub(super) fn html(&self, what: &str, plots: usize) -> Markup {
         let on_front = match plots {
             0 => "on a Pareto front",
@@ -240,7 +240,7 @@ impl Table {
         }
     }
 
-    /// That a column has figures and no text.
+    /// Whether a column has figures and no text.
     fn is_number(&self, column: usize) -> bool {
         let mut cells = self.rows.iter().map(|row| &row[column]);
         cells.clone().any(|cell| matches!(cell, Cell::Number(_)))
@@ -316,7 +316,7 @@ mod tests {
             field(with_quotes.into()),
             "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""
         );
-        // The control: what is none, and numbers, stay as they are.
+        // The control: other texts, and numbers, are unchanged.
         for text in ["1+1=2", "a-b", "-5", "+1e3", "", "'a", "a=b"] {
             assert_eq!(field(text.into()), text);
         }

@@ -4,13 +4,13 @@ use crate::error::Result;
 use crate::options::Setting;
 use crate::scene::Mode;
 
-/// Voxels, coarse to fine.
+/// The steps, in voxels, coarse to fine.
 const STEPS: [&str; 6] = ["4", "2", "1", "0.5", "0.25", "0.125"];
 /// How a hit is refined: not at all, or as it is by default. What lies between costs as much.
 const REFINERS: [&str; 2] = ["none", "regula-falsi:5"];
-/// Of each order the cheapest rule, and the one that misses no value between two samples.
+/// The cheapest rule of each order, and the one that misses no value between two samples.
 const RULES: [&str; 4] = ["riemann", "midpoint", "simpson", "preintegrated"];
-/// Of adaptive quadrature, in linear light.
+/// The error bounds of adaptive quadrature, in linear light.
 const BOUNDS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 /// The greatest slope of the sRGB curve (IEC 61966-2-1), which is at black: what a difference in linear
@@ -25,7 +25,7 @@ pub type Chain = Vec<Setting>;
 /// bounds that by itself keeps `limit`, a difference of displayed colours 0..1.
 ///
 /// # Errors
-/// None in practice: the texts are sound.
+/// A text of this module does not parse, which tests rule out.
 pub fn candidates(mode: Mode, limit: f64) -> Result<Vec<Chain>> {
     let mut chains: Vec<Vec<String>> = Vec::new();
     let mut by_step = |how: &str| {

@@ -3,32 +3,32 @@
 use crate::error::{Error, Result};
 use crate::frame::{DEPTH, Frame, Layer, VALUE, Wanted, percentile};
 use crate::options::{ErrorBound, ErrorMetric};
-use crate::reference::{Sight, display};
+use crate::reference::{RayResult, display};
 use crate::scene::Tone;
 use crate::volume::Volume;
 
-/// What a pixel shows, as far as a metric looks at it; narrowed to the planes' single precision, as
+/// The contents of a pixel, as far as a metric uses them; narrowed to the planes' single precision, as
 /// pictures are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// Display, 0..1.
+    /// The displayed colour, 0..1.
     rgb: [f32; 3],
-    /// mm; +∞: no hit.
+    /// The depth, mm; +∞: no hit.
     depth: f32,
-    /// Physical.
+    /// The value, physical.
     value: f32,
-    /// Whether there is anything.
+    /// Whether the pixel shows anything.
     covered: bool,
 }
 
 impl Seen {
-    pub fn by_reference(sight: &Sight, tone: &Tone) -> Self {
-        let [r, g, b, _] = display(sight.color, tone).map(|c| c as f32);
+    pub fn by_reference(result: &RayResult, tone: &Tone) -> Self {
+        let [r, g, b, _] = display(result.color, tone).map(|c| c as f32);
         Self {
             rgb: [r, g, b],
-            depth: sight.depth_mm as f32,
-            value: sight.value as f32,
-            covered: sight.color[3] as f32 > 0.0,
+            depth: result.depth_mm as f32,
+            value: result.value as f32,
+            covered: result.color[3] as f32 > 0.0,
         }
     }
 
@@ -51,14 +51,14 @@ impl Seen {
     }
 }
 
-/// What a metric makes of all pixels.
+/// The figure that a metric computes from all pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Figure {
     /// The root of the mean.
     RootMean,
     /// The greatest.
     Greatest,
-    /// What 99 of 100 do not exceed.
+    /// The 99th percentile.
     Percentile99,
     /// The number of pixels that are off over the number of hits.
     ShareOfHits,
@@ -68,13 +68,15 @@ pub enum Figure {
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation {
     metric: ErrorMetric,
-    /// Of psnr its rmse.
+    /// The limit on the figure; for psnr, the limit on the rmse.
     limit: f64,
-    /// Of depth the smallest spacing, mm, of value the value range; else 1.
+    /// The unit of the metric: for depth the smallest spacing, mm; for value the value range; else 1.
     unit: f64,
 }
 
 impl Deviation {
+    /// Prepares the metric of a bound for a volume.
+    ///
     /// # Errors
     /// All voxels are equal, so that no value can be a share of their range.
     pub fn new(bound: ErrorBound, volume: &Volume) -> Result<Self> {
@@ -88,7 +90,7 @@ impl Deviation {
             return Err(Error::failed(
                 "all voxels are equal: no error can be given as a share of their range",
             )
-            .hint("bound another error than value"));
+            .hint("bound an error other than value"));
         }
         let limit = match metric {
             ErrorMetric::Psnr => 10_f64.powf(-bound.bound() / 20.0),
@@ -101,7 +103,7 @@ impl Deviation {
         })
     }
 
-    /// What the figure must not exceed.
+    /// The limit of the figure.
     pub fn limit(&self) -> f64 {
         self.limit
     }
@@ -123,7 +125,7 @@ impl Deviation {
         }
     }
 
-    /// The planes that the metric looks at.
+    /// The planes that the metric uses.
     pub fn wanted(&self) -> Wanted {
         match self.metric {
             ErrorMetric::Rmse | ErrorMetric::Max | ErrorMetric::P99 | ErrorMetric::Psnr => {

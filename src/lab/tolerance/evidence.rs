@@ -48,7 +48,7 @@ pub struct Estimate {
     pub upper: f64,
 }
 
-/// What is known of the reference picture of one scene.
+/// The known part of the reference picture of one scene.
 pub struct Evidence<'a> {
     deviation: Deviation,
     scene: &'a Scene,
@@ -59,7 +59,7 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
-    /// From the device's surest picture of a scene; with its certificate, where it has one.
+    /// Takes the device's surest picture of a scene; with its certificate, if it has one.
     ///
     /// # Errors
     /// As [`Tracer::new`].
@@ -200,8 +200,8 @@ impl<'a> Evidence<'a> {
         parts.fold(0.0, f64::max)
     }
 
-    /// What the unknown pixels' reference adds to the mean of the parts of all, and how much more it may
-    /// be.
+    /// The expected difference that the unknown pixels' reference makes to the mean of all parts, and
+    /// its margin.
     fn correction(&self, picture: &Frame, sample: &Sample) -> (f64, f64) {
         let tiles = self.sums(sample, |pixel, reference, surest| {
             let seen = Seen::in_frame(picture, pixel);
@@ -221,7 +221,7 @@ impl<'a> Evidence<'a> {
         (mean.mean * share, mean.margin * share)
     }
 
-    /// What `of` (pixel, reference, surest) adds up to in each tile, and the tile's pixels.
+    /// The sum of `of` (pixel, reference, surest) in each tile, and the tile's number of pixels.
     fn sums(&self, sample: &Sample, of: impl Fn(usize, &Seen, &Seen) -> f64) -> Vec<(f64, usize)> {
         let of_pixel = |&pixel: &u32| {
             let reference = self.known.get(&pixel)?;

@@ -43,21 +43,21 @@ use crate::volume::Volume;
 
 use search::Search;
 
-/// Of the random tiles where nothing is to be repeated with others: the same in every run.
+/// The seed of the random tiles unless another is given: the same in every run.
 pub const SEED: u64 = 1;
 
-/// What a setting is chosen for.
+/// The task for which a setting is chosen.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     pub volume: &'a Volume,
     pub subject: &'a Subject,
-    /// What is seen; of how, at most what is not the bound's to decide
-    /// ([`SceneOptions::undecided`]).
+    /// The options of the picture; of those that say how rays are followed, only what the bound does not
+    /// decide ([`SceneOptions::undecided`]).
     pub options: &'a SceneOptions,
     pub bound: ErrorBound,
     /// The planes that are rendered afterwards: what the time is taken of.
     pub wanted: Wanted,
-    /// Of the random tiles.
+    /// The seed of the random tiles.
     pub seed: u64,
     /// Other places of the camera where the same setting has to keep the bound: a choice is verified
     /// at each.
@@ -86,7 +86,7 @@ pub struct Choice {
 /// Upon what a choice was verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
-    /// Places of the camera.
+    /// The number of places of the camera.
     pub views: usize,
     /// Fresh random ones; none where the tiles before were the whole picture.
     pub tiles: usize,
@@ -98,15 +98,15 @@ pub struct Verified {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
     pub setting: Setting,
-    /// In the size it was last timed in; of those within the bound.
+    /// The time in the size it was last timed in, ms; of candidates within the bound.
     pub ms: Option<f64>,
-    /// As last known, in the metric's unit; infinite for a missed hit's depth.
+    /// The error as last measured, in the metric's unit; infinite for a missed hit's depth.
     pub error: f64,
-    /// Whether that was in the real picture, against the reference.
+    /// Whether the error was measured in the real picture, against the reference.
     pub evaluated: bool,
 }
 
-/// What a choice itself has cost.
+/// The cost of the choice itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
     pub ms: f64,
@@ -114,7 +114,7 @@ pub struct Cost {
     pub rays: u64,
     /// The device's, whole pictures.
     pub renderings: usize,
-    /// Of `ms`: building kernels, uploading.
+    /// The part of `ms` that went into building kernels and uploading.
     pub build_ms: f64,
     pub upload_ms: f64,
     pub uploaded_bytes: u64,

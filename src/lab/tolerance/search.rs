@@ -26,11 +26,11 @@ const SCREEN_SLACK: f64 = 1.2;
 /// Candidates up to this many times as slow as the fastest that keeps the bound are timed beside
 /// it: times of small pictures are not those of large ones.
 const ABOUT_AS_FAST: f64 = 1.4;
-/// At most so many of them.
+/// The most candidates that are timed together.
 const TIMED_TOGETHER: usize = 5;
 /// Times are taken for equal within this factor.
 const EQUALLY_FAST: f64 = 1.05;
-/// What takes longer than this many times the fastest's time, each timed once, is not timed again.
+/// The multiple of the fastest's time, each timed once, beyond which a candidate is not timed again.
 const MAYBE_FASTEST: f64 = 2.0;
 /// Repeats in turn: as many as fit into so much time, within limits.
 const REPEATS: [usize; 2] = [1, 7];
@@ -46,7 +46,7 @@ struct Chosen {
 
 /// Another place of the camera, and what is known there once it was visited.
 struct View<'a> {
-    /// Under the surest setting.
+    /// The scene under the surest setting.
     scene: &'a Scene,
     evidence: Option<Evidence<'a>>,
 }
@@ -60,7 +60,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// What a choice is verified by.
+/// The pictures by which a choice is verified.
 struct Verifying<'v, 'e> {
     evidence: &'v mut Evidence<'e>,
     views: &'v mut [View<'e>],
@@ -71,9 +71,9 @@ struct Verifying<'v, 'e> {
 struct Waiting {
     /// The fastest first, by their times in the small picture.
     queue: VecDeque<usize>,
-    /// Of the small picture.
+    /// The size of the small picture.
     size: ImageSize,
-    /// What takes longer than this in it is no better than the surest.
+    /// The time beyond which a candidate is no better than the surest in this picture, ms.
     slowest_ms: f64,
 }
 
@@ -86,6 +86,8 @@ pub struct Search<'s, 'a> {
 }
 
 impl<'s, 'a> Search<'s, 'a> {
+    /// Prepares the search for a setting.
+    ///
     /// # Errors
     /// Usage: the mode has no such metric, the options contradict each other.
     pub fn new(task: &'s Task<'s>, renderer: &'s mut Renderer<'a>) -> Result<Self> {
@@ -109,6 +111,8 @@ impl<'s, 'a> Search<'s, 'a> {
         })
     }
 
+    /// Searches for the cheapest setting that meets the bound.
+    ///
     /// # Errors
     /// The device fails.
     pub fn run(mut self) -> Result<Choice> {
@@ -188,8 +192,8 @@ impl<'s, 'a> Search<'s, 'a> {
         self.candidates[at].ms.unwrap_or(f64::INFINITY)
     }
 
-    /// In place of one that failed, the next finer one of its chain waits; unless it is slower than
-    /// the surest.
+    /// Queues the next finer candidate of the chain of one that failed, unless it is slower than the
+    /// surest.
     fn refine(&mut self, failed: usize, waiting: &mut Waiting) -> Result<()> {
         let finer = failed + 1;
         if self.candidates[failed].is_finest || self.candidates[finer].ms.is_some() {
@@ -302,7 +306,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(chosen)
     }
 
-    /// What the surest candidate and the reference show of a scene.
+    /// The evidence from a scene, as the surest candidate and the reference show it.
     fn evidence<'e>(&mut self, scene: &'e Scene) -> Result<Evidence<'e>>
     where
         's: 'e,

@@ -10,7 +10,7 @@ use super::{CONFIDENCE, Choice};
 pub struct ToleranceStats {
     metric: &'static str,
     bound: f64,
-    /// As flags.
+    /// The chosen setting, as flags.
     chosen: String,
     estimate: f64,
     upper: f64,
@@ -33,7 +33,7 @@ struct TriedStats {
     setting: String,
     ms: Option<f64>,
     error: f64,
-    judged: bool,
+    evaluated: bool,
 }
 
 #[derive(Serialize)]
@@ -51,7 +51,7 @@ impl ToleranceStats {
             setting: tried.setting.flags(),
             ms: tried.ms,
             error: tried.error,
-            judged: tried.evaluated,
+            evaluated: tried.evaluated,
         });
         Self {
             metric: bound.metric().name(),

@@ -31,9 +31,9 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// Of tiles, each as its sum and its pixels (a ratio estimate; Cochran 1977, §6.4). Pixels side
-    /// by side are no independent samples; tiles are, and that every stratum has its own only makes
-    /// the margin too wide. Nothing is known of too few tiles.
+    /// The mean over tiles, each given as its sum and its number of pixels (a ratio estimate; Cochran
+    /// 1977, §6.4). Neighbouring pixels are no independent samples; tiles are, and the fact that every
+    /// stratum has its own only makes the margin too wide. The margin of too few tiles is infinite.
     pub fn of(tiles: &[(f64, usize)]) -> Self {
         let count = tiles.len();
         let pixels: f64 = tiles.iter().map(|&(_, pixels)| pixels as f64).sum();
@@ -81,7 +81,7 @@ mod tests {
             let got = quantile(degrees);
             assert!((got / t - 1.0).abs() < 5e-3, "{degrees}: {got} {t}");
         }
-        // The control: the normal distribution's is none of them.
+        // The control: the normal distribution's differs from all of them.
         assert!((Z / quantile(10) - 1.0).abs() > 0.1);
     }
 

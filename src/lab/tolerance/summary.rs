@@ -25,7 +25,7 @@ impl fmt::Display for Choice {
         let outcome = if self.met {
             format!("chose {}", setting.flags())
         } else {
-            format!("nothing keeps it, {} is used", setting.flags())
+            format!("nothing meets it, {} is used", setting.flags())
         };
         let views = match verified.views {
             1 => String::new(),
@@ -50,7 +50,7 @@ impl fmt::Display for Choice {
     }
 }
 
-/// To three digits: more would not be known.
+/// Rounds to three digits, as no more are known.
 fn rounded(figure: f64) -> f64 {
     format!("{figure:.2e}").parse().unwrap_or(figure)
 }

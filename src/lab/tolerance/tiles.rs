@@ -35,7 +35,7 @@ impl Tiles {
 
     /// Tiles of about `pixels` pixels in all, as their pixels' numbers: what is left of the picture
     /// is cut into as many parts of equal size, and of each one tile is drawn, all with equal
-    /// probability. None comes twice; fewer than requested where no more are left.
+    /// probability. None comes twice; fewer than requested if no more are left.
     pub fn draw(&mut self, pixels: usize) -> Vec<Vec<u32>> {
         let wanted = pixels.div_ceil((SIDE_PX * SIDE_PX) as usize);
         let strata = wanted.min(self.left.len());

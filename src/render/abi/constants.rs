@@ -117,7 +117,7 @@ kernel_enum! {
         Below => CLASS_BELOW = 0,
         /// Wholly at or above the iso value.
         Above => CLASS_ABOVE = 1,
-        /// Must be sampled.
+        /// The node must be sampled.
         Visit => CLASS_VISIT = 2,
         /// A leaf that its average value stands for.
         Homogeneous => CLASS_HOMOGENEOUS = 3,

@@ -17,7 +17,7 @@ impl Lanes {
     /// Every number of rays, ascending.
     pub const ALL: [Self; 3] = [Self::ONE, Self(8), Self(16)];
 
-    /// So many rays.
+    /// A number of rays side by side.
     ///
     /// # Errors
     /// Another number than those of [`Lanes::ALL`].
@@ -30,8 +30,8 @@ impl Lanes {
         })
     }
 
-    /// As many as a CPU's vectors hold single-precision numbers; one on anything else, whose own
-    /// hardware puts work-items side by side.
+    /// The number of lanes for a device: as many single-precision numbers as a CPU's vectors hold; one
+    /// on anything else, whose own hardware puts work-items side by side.
     pub fn of(device: &DeviceInfo) -> Self {
         match (device.kind, device.vector_width) {
             (DeviceKind::Cpu, 16..) => Self(16),

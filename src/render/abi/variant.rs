@@ -17,7 +17,7 @@ pub struct Variant {
     pub filter: Filter,
     /// The edge of the octree's leaves.
     pub leaf: Leaf,
-    /// Whether there are more voxels than 32 bits count.
+    /// Whether there are more voxels than a 32-bit index can count.
     pub wide_index: bool,
     /// Rays that a work-item follows side by side.
     pub lanes: Lanes,

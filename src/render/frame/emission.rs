@@ -82,7 +82,8 @@ fn layers_written(view: &View) -> Vec<Layer> {
     layers
 }
 
-/// What stands for each leaf. Where no leaf counts as homogeneous the rays are followed as without.
+/// The averages that stand for homogeneous leaves; `None` where no leaf counts as homogeneous, and rays
+/// are followed as without.
 fn node_average(run: &Run, view: &View, emission: &Emission) -> Result<Option<Buffer<f32>>> {
     if emission.homogeneity.is_none() || !view.inputs.occupancy.has_homogeneous() {
         return Ok(None);
@@ -106,7 +107,7 @@ fn emission_cast(
         ..
     } = *emission;
     // What a bound on premultiplied light leaves for opacity: all behind may be this bright.
-    let bound = quadrature.bound() / emission.phong.map_or(1.0, reflected_at_most).max(1.0);
+    let bound = quadrature.bound() / emission.phong.map_or(1.0, max_reflected).max(1.0);
     let termination = 1.0 - emission.termination.get();
     let min_transmittance = if quadrature.is_stepped() {
         termination
@@ -145,6 +146,6 @@ fn traverse_through_leaves(view: &View) -> u32 {
 }
 
 /// The most light that white reflects.
-fn reflected_at_most(phong: Phong) -> f64 {
+fn max_reflected(phong: Phong) -> f64 {
     phong.ambient.get() + phong.diffuse.get() + phong.specular.get()
 }

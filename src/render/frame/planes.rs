@@ -1,4 +1,4 @@
-//! The planes that a picture's passes leave on the device, and their way back to the host.
+//! The planes that a picture's passes leave on the device, and how they are downloaded to the host.
 
 use crate::error::Result;
 use crate::extent::ImageSize;
@@ -10,11 +10,11 @@ use crate::volume::Rescale;
 
 /// Planes of a picture on the device.
 pub struct Planes {
-    /// Linear light, premultiplied.
+    /// The colour: linear light, premultiplied.
     pub color: Buffer<[f32; 4]>,
     /// The picture as it is displayed, where that is wanted.
     pub display: Option<Buffer<[f32; 4]>>,
-    /// The layers that are wanted, or were needed on the way; values are in stored units. A medium has no
+    /// The layers that are wanted, or were needed to make those; values are in stored units. A medium has no
     /// kind: it is there where it is opaque enough to have layers.
     pub layers: DeviceLayers,
     /// Bytes of tables and planes that only the passes needed.

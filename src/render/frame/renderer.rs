@@ -34,7 +34,7 @@ pub struct Options {
     pub lanes: Option<Lanes>,
 }
 
-/// A volume on a device, ready to be looked at.
+/// A volume on a device, ready to be rendered.
 pub struct Renderer<'a> {
     pub(super) device: &'a Device,
     pub(super) volume: &'a Volume,
@@ -61,7 +61,8 @@ pub struct Rendering {
     pub upload_ms: f64,
     /// Time to find from ranges of values what can be left out; 0 where it was known from an earlier frame.
     pub classify_ms: f64,
-    /// Bytes from host to device, for this frame; with the volume's first frame the volume too.
+    /// The bytes uploaded from host to device for this frame; with the volume's first frame the volume
+    /// too.
     pub uploaded_bytes: u64,
     /// Device time from the first launch's start to the last one's end.
     pub render_ms: f64,
@@ -111,12 +112,12 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// The volume that is looked at.
+    /// The volume that is rendered.
     pub fn volume(&self) -> &'a Volume {
         self.volume
     }
 
-    /// Whether the device can hold the volume in this storage.
+    /// Checks that the device can hold the volume in this storage.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of the voxels' type.

@@ -39,7 +39,7 @@ pub fn check_picture(
     const COLOR: u64 = 16;
     const HIT: u64 = 4;
     let display = if wanted.display { COLOR } else { 0 };
-    // Layers that are not wanted may be needed on the way.
+    // Layers that are not wanted may be needed to make those that are.
     let layers: u64 = Layer::ALL.map(DeviceLayers::entry_bytes).iter().sum();
     let on_device = COLOR + display + HIT + layers;
     let read_back = match device.kind {

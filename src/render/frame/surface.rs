@@ -12,7 +12,7 @@ use super::view::View;
 
 /// How a scene's surface is found and seen, but for its iso value.
 pub struct Surface {
-    /// Whether the volume's faces are closed where they are above the iso value.
+    /// Whether the volume's faces are closed with caps where they are above the iso value.
     pub caps: bool,
     /// How a crossing between two samples is refined.
     pub refine: Refine,

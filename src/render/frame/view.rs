@@ -18,7 +18,7 @@ pub struct View<'a> {
     pub volume: &'a Volume,
     /// Its octree on the host.
     pub octree: &'a Octree,
-    /// The same on the device, as casts read it.
+    /// The view on the device, as casts read it.
     pub inputs: CastInputs<'a>,
     /// How normals are found.
     pub gradient: DeviceGradient<'a>,

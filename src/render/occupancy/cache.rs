@@ -1,5 +1,5 @@
 //! A cache of the occupancies by the last few criteria: found once per iso value, floor or transfer function,
-//! however many frames look at the volume.
+//! however many frames are made of the volume.
 
 use crate::error::Result;
 use crate::gpu::Device;
@@ -16,7 +16,7 @@ use super::occupancy_map::Occupancy;
 pub struct OccupancyCache(Vec<Occupancy>);
 
 impl OccupancyCache {
-    /// The occupancy by a criterion where rays are sampled in this way, and whether it had to be found.
+    /// The occupancy by a criterion for rays with this sampling, and whether it had to be computed.
     ///
     /// # Errors
     /// The host or the device has no room.

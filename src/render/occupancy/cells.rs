@@ -98,7 +98,7 @@ fn visited(
             }
         });
     });
-    // In place: the two are laid out alike.
+    // In place: the two have the same layout.
     Ok(words.into_iter().map(AtomicU64::into_inner).collect())
 }
 

@@ -24,7 +24,7 @@ pub struct Occupancy {
 }
 
 impl Occupancy {
-    /// Classifies nodes and cells for rays that are sampled in this way, and uploads what is known of them.
+    /// Classifies nodes and cells for rays with this sampling, and uploads the classes.
     ///
     /// # Errors
     /// The host or the device has no room.
@@ -66,7 +66,7 @@ impl Occupancy {
         self.has_homogeneous
     }
 
-    /// Whether it holds for this criterion and sampling too.
+    /// Whether the occupancy also holds for this criterion and sampling.
     pub fn serves(&self, sampling: &Sampling, criterion: &Criterion) -> bool {
         self.criterion == *criterion
             && self.traverse == sampling.traverse

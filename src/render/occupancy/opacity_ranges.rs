@@ -11,7 +11,7 @@ use crate::render::resources::Knots;
 /// A transfer function prepared for many ranges of values.
 pub struct OpacityRanges<'a> {
     knots: &'a Knots,
-    /// Bins a stored unit.
+    /// The number of bins per stored unit.
     per_unit: f64,
     /// `first[b]`: how many knots lie in bins before b.
     first: Vec<u32>,
@@ -24,6 +24,7 @@ pub struct OpacityRanges<'a> {
 const BINS: usize = 4096;
 
 impl<'a> OpacityRanges<'a> {
+    /// Prepares a transfer function for queries of ranges.
     pub fn new(knots: &'a Knots) -> Self {
         let count = knots.values.len();
         let width = f64::from(knots.values[count - 1]) - f64::from(knots.values[0]);
@@ -59,7 +60,7 @@ impl<'a> OpacityRanges<'a> {
         ranges
     }
 
-    /// Never falls as the value grows.
+    /// The bin of a value, which never falls as the value grows.
     fn bin(&self, value: f32) -> usize {
         let from_first = f64::from(value) - f64::from(self.knots.values[0]);
         ((from_first * self.per_unit) as usize).min(BINS - 1)
@@ -101,7 +102,7 @@ impl<'a> OpacityRanges<'a> {
         join(ends, join(row[inside], row[end - (1 << level)]))
     }
 
-    /// At a value with `after` knots at or below it.
+    /// The channels at a value with `after` knots at or below it.
     fn at(&self, value: f32, after: usize) -> [f32; 4] {
         let colors = &self.knots.colors;
         if after == 0 || after == colors.len() {
@@ -176,16 +177,16 @@ mod tests {
         seen
     }
 
-    fn every_range(mut judge: impl FnMut(f64, f64)) {
+    fn every_range(mut test: impl FnMut(f64, f64)) {
         for lo in -4..=90 {
             for hi in lo..=90 {
-                judge(f64::from(lo) * 0.5, f64::from(hi) * 0.5);
+                test(f64::from(lo) * 0.5, f64::from(hi) * 0.5);
             }
         }
         for lo in 0..=60 {
             for hi in lo..=60 {
                 let [lo, hi] = [lo, hi].map(|i| f64::from((29.98 + f64::from(i) * 0.001) as f32));
-                judge(lo, hi);
+                test(lo, hi);
             }
         }
     }

@@ -22,7 +22,7 @@ pub struct EmissionInputs<'a> {
     pub cast: EmissionCast,
     /// The light; shaded or not.
     pub shading: Shading,
-    /// Whether the light is made use of.
+    /// Whether the light is used.
     pub shaded: bool,
 }
 

@@ -8,7 +8,8 @@ use crate::render::resources::{DeviceGradient, DeviceLayers};
 use super::inputs::CastInputs;
 use super::run::Run;
 
-/// As [`cast_maximum`](super::cast_maximum::cast_maximum), from every cell that matters instead of from samples.
+/// Projects along every ray, from every cell that matters instead of from samples; compare
+/// [`cast_maximum`](super::cast_maximum::cast_maximum).
 pub fn exact_projection(
     run: &mut Run,
     which: ProjectionLoop,

@@ -9,8 +9,8 @@ use crate::render::resources::{DeviceGradient, DeviceLayers};
 use super::inputs::CastInputs;
 use super::run::Run;
 
-/// As [`cast_surface`](super::cast_surface::cast_surface), solved in every cell, with what is proven of each
-/// ray.
+/// Finds the first surface along every ray by solving every cell, with what is proven of each ray;
+/// compare [`cast_surface`](super::cast_surface::cast_surface).
 pub fn exact_surface(
     run: &mut Run,
     inputs: CastInputs,

@@ -11,7 +11,7 @@ use super::run::Run;
 pub struct CastInputs<'a> {
     /// The volume, but for its voxels.
     pub volume: &'a DeviceVolume,
-    /// Which of its nodes and cells matter.
+    /// The volume's nodes and cells that matter.
     pub occupancy: &'a Occupancy,
     /// The scene's clip planes.
     pub clip: &'a DeviceClip,

@@ -6,7 +6,7 @@ use crate::render::abi::Tone;
 
 use super::run::Run;
 
-/// From linear light `color` to sRGB-encoded, opaque `display`.
+/// Converts linear light `color` to the sRGB-encoded, opaque `display`.
 pub fn tone_curve(
     run: &mut Run,
     tone: &Tone,

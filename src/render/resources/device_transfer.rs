@@ -6,7 +6,7 @@ use crate::scene::{Filter, QuadratureMethod};
 
 use super::transfer::Knots;
 
-/// Which tables of a transfer function a pass reads beside its knots.
+/// The tables of a transfer function that a pass reads beside its knots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tables {
     /// The integrals over the knots.
@@ -40,7 +40,7 @@ pub struct DeviceTransfer {
     /// Stored units; outside nothing absorbs.
     pub absorbing: [f32; 2],
     values: Buffer<f32>,
-    /// Linear light, opacity of the unit length in the last channel.
+    /// The knots' colours in linear light, with the opacity of the unit length in the last channel.
     colors: Buffer<[f32; 4]>,
     /// The sums over the knots, as `KnotSums` of `preintegrated.clh` has them.
     sums: Option<Buffer<[f32; 4]>>,

@@ -19,9 +19,9 @@ const STRONG: f64 = 0.1;
 
 /// Directions in index space, at the voxels 0, N, 2N, … of each axis and at its last.
 pub struct Directions {
-    /// Along x, y, z.
+    /// The number of directions along x, y, z.
     pub grid: [u32; 3],
-    /// N, voxels.
+    /// The distance of two directions, in voxels.
     pub apart: u32,
     /// Three components each, x fastest; all 0 where there is no gradient.
     pub packed: Vec<i16>,
@@ -31,11 +31,11 @@ pub struct Directions {
 /// places spread over the volume where the gradient is at least a tenth of the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleError {
-    /// The mean angle.
+    /// The mean angle, degrees.
     pub mean_deg: f64,
     /// The angle that 99 of 100 places do not exceed.
     pub p99_deg: f64,
-    /// At how many places it was measured.
+    /// The number of places at which it was measured.
     pub places: usize,
 }
 
@@ -213,7 +213,7 @@ fn trilinear(volume: &Volume, p: [f64; 3]) -> f64 {
     sum
 }
 
-/// Between two directions; 90° where one of them is none.
+/// The angle between two directions; 90° if one of them is zero.
 fn angle_deg(a: DVec3, b: DVec3) -> f64 {
     let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
     a.cross(b)

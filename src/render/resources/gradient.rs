@@ -29,7 +29,7 @@ pub struct DeviceDirections {
     /// Their cost and error.
     pub figures: GradientFigures,
     directions: Buffer<i16>,
-    /// Along x, y, z; voxels between two.
+    /// The number of directions along x, y, z, and the voxels between two.
     grid: [u32; 4],
 }
 
@@ -73,9 +73,9 @@ pub fn needed_gradients(scene: &Scene, wanted: Wanted) -> Option<Precomputed> {
 /// How a pass finds gradients: by a constant, and where directions are read, their arguments.
 #[derive(Clone, Copy)]
 pub enum DeviceGradient<'a> {
-    /// By differences of the field, of this kind.
+    /// Gradients by differences of the field, of this kind.
     Differences(Gradient),
-    /// From directions that were computed before.
+    /// Gradients from directions that were computed before.
     Directions(&'a DeviceDirections),
 }
 
@@ -92,7 +92,7 @@ impl<'a> DeviceGradient<'a> {
         }
     }
 
-    /// Adds the constant.
+    /// Adds the constant of the gradient's kind.
     pub fn define(self, defines: Defines) -> Defines {
         let gradient = match self {
             Self::Differences(gradient) => gradient,

@@ -46,7 +46,7 @@ impl DevicePlane {
     }
 }
 
-/// The planes of a picture's layers on the device: those that are wanted, or needed on the way. Kernels know
+/// The planes of a picture's layers on the device: those that are wanted, or needed to make those. Kernels know
 /// each by its layer's name.
 #[derive(Default)]
 pub struct DeviceLayers([Option<DevicePlane>; Layer::COUNT]);
@@ -90,7 +90,7 @@ impl DeviceLayers {
         }
     }
 
-    /// As [`DeviceLayers::reading`], for a pass that writes them.
+    /// The kernel arguments of a pass that writes the layers; compare [`DeviceLayers::reading`].
     pub fn writing<'a>(&'a mut self, layers: &'a [Layer]) -> impl Group + 'a {
         self.reading(layers)
     }

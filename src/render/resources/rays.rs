@@ -14,11 +14,11 @@ use crate::volume::Volume;
 /// A ray of its own, in index space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IndexRay {
-    /// Its origin.
+    /// The ray's origin.
     pub origin: [f32; 3],
-    /// Its direction, of any length: t counts its lengths.
+    /// The ray's direction, of any length: t counts its lengths.
     pub dir: [f32; 3],
-    /// The part of it that is looked at: from `t_min`, not negative, to `t_max`, which may be +∞.
+    /// The part of it that is cast: from `t_min`, not negative, to `t_max`, which may be +∞.
     pub t: [f32; 2],
 }
 
@@ -50,7 +50,7 @@ pub enum RaySource {
     },
     /// Rays that are given one by one, [`IndexRay`]s; they need not run together.
     Buffers {
-        /// Origins, and in w where the part that is looked at begins.
+        /// Origins, and in w where the part that is cast begins.
         origins: Buffer<[f32; 4]>,
         /// Directions, and in w where it ends.
         dirs: Buffer<[f32; 4]>,
@@ -69,7 +69,7 @@ impl RaySource {
         }
     }
 
-    /// Those of a camera's rays that go through these pixels, counted row by row. Work-items follow
+    /// The rays of a camera that go through these pixels, counted row by row. Work-items follow
     /// neighbours together, in whatever order they are listed.
     ///
     /// # Errors
@@ -216,7 +216,7 @@ impl Linear {
         [self.at_first, self.per_column, self.per_row].map(float4)
     }
 
-    /// What [`Self::float4s`] leaves out.
+    /// The low parts that [`Self::float4s`] leaves out.
     fn low_float4s(&self) -> [[f32; 4]; 3] {
         [self.at_first, self.per_column, self.per_row].map(|v| {
             let high = v.to_array().map(|c| f64::from(c as f32));

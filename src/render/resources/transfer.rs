@@ -7,14 +7,14 @@ use crate::volume::Volume;
 /// The knots of a transfer function, ascending in value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Knots {
-    /// Stored units.
+    /// The knots' values, in stored units.
     pub values: Vec<f32>,
-    /// Linear light; the opacity of the unit length in the last channel.
+    /// The knots' colours in linear light, with the opacity of the unit length in the last channel.
     pub colors: Vec<[f32; 4]>,
 }
 
-/// Between two smooth knots 1 − opacity changes by this factor at most (`SMOOTH_PARTS` of the constants follows from it),
-/// so that three Gauss points integrate its logarithm within 1e-6 of itself.
+/// The factor by which 1 − opacity changes at most between two smooth knots (`SMOOTH_PARTS` of the
+/// constants follows from it), so that three Gauss points integrate its logarithm within 1e-6 of itself.
 const SMOOTH_RATIO: f64 = 1.5;
 
 impl Knots {
@@ -34,7 +34,7 @@ impl Knots {
         }
     }
 
-    /// The same function with more knots, so that between any two its absorption is close to a
+    /// Returns the same function with more knots, so that between any two its absorption is close to a
     /// polynomial.
     pub fn smooth(&self) -> Self {
         let mut smooth = Self {

@@ -12,9 +12,9 @@ use crate::volume::Volume;
 pub struct DeviceVolume {
     /// Sizes, and the map of gradients.
     pub grid: VolumeGrid,
-    /// Per octree level its nodes along x, y, z and its first node's offset.
+    /// The nodes along x, y, z and the first node's offset of each octree level.
     pub levels: Buffer<[u32; 4]>,
-    /// Per octree node the range of its values.
+    /// The range of values of each octree node.
     pub node_range: Buffer<[f32; 2]>,
 }
 

@@ -10,12 +10,14 @@ use crate::volume::{Volume, VoxelType};
 
 /// The voxels of a volume on the device, in stored units, x fastest.
 pub enum DeviceVoxels {
+    /// The voxels in a buffer, in their own type.
     Buffer(AnyBuffer),
+    /// The voxels in a three-dimensional image.
     Image(Image),
 }
 
 impl DeviceVoxels {
-    /// Whether the device can hold a volume so.
+    /// Checks that the device can hold a volume in this storage.
     ///
     /// # Errors
     /// The device has no images, none so large, or none of the voxels' type.

@@ -28,7 +28,7 @@ impl Histogram {
     }
 }
 
-/// `value` with as many decimals as tell 1/1000 of the range apart.
+/// `value` with as many decimals as distinguish 1/1000 of the range.
 fn short(value: f64, range: Range) -> String {
     let decimals = if range.width() > 0.0 {
         (3.0 - range.width().log10()).ceil().clamp(0.0, 9.0) as usize
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_far_from_zero_are_told_apart() {
+    fn edges_far_from_zero_are_distinguished() {
         let edges = |min: f64, max: f64| -> Vec<String> {
             let range = Range { min, max };
             let counts = vec![1; 16];

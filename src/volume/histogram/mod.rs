@@ -15,7 +15,9 @@ use crate::volume::{Volume, Voxels};
 /// volume of one value lies in the first bin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
+    /// The range of physical values that the bins divide.
     pub range: Range,
+    /// The number of voxels in each bin.
     pub counts: Vec<u64>,
 }
 

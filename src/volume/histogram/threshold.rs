@@ -44,15 +44,15 @@ pub fn suggested_iso(histogram: &Histogram) -> f64 {
 }
 
 /// The share of the values' variance that lies between the two classes of [`Histogram::otsu`], 0 to
-/// 1: the better they are told apart, the nearer to 1.
+/// 1: the better they are separated, the nearer to 1.
 pub fn between_class_share(counts: &[u64]) -> f64 {
     let weights: Vec<f64> = counts.iter().map(|&count| count as f64).collect();
     let Some(upper) = split(&weights) else {
         return 0.0;
     };
     let mean = |bins: &[f64]| {
-        let moment: f64 = bins.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
-        moment / bins.iter().sum::<f64>()
+        let first_moment: f64 = bins.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
+        first_moment / bins.iter().sum::<f64>()
     };
     let total: f64 = weights.iter().sum();
     let low = weights[..upper].iter().sum::<f64>() / total;
@@ -67,12 +67,13 @@ pub fn between_class_share(counts: &[u64]) -> f64 {
 /// fewer than two bins are filled.
 fn split(weights: &[f64]) -> Option<usize> {
     let total: f64 = weights.iter().sum();
-    let moment: f64 = weights.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
-    let (mut below, mut moment_below) = (0.0, 0.0);
+    let first_moment: f64 = weights.iter().zip(0..).map(|(w, i)| w * f64::from(i)).sum();
+    let (mut below, mut first_moment_below) = (0.0, 0.0);
     let (mut best, mut first, mut last) = (0.0, 0, 0);
     for (bin, &weight) in weights.iter().enumerate() {
         if below > 0.0 && below < total {
-            let apart = moment_below / below - (moment - moment_below) / (total - below);
+            let apart =
+                first_moment_below / below - (first_moment - first_moment_below) / (total - below);
             let variance = below * (total - below) * apart * apart;
             if variance > best {
                 (best, first) = (variance, bin);
@@ -82,7 +83,7 @@ fn split(weights: &[f64]) -> Option<usize> {
             }
         }
         below += weight;
-        moment_below += weight * bin as f64;
+        first_moment_below += weight * bin as f64;
     }
     (best > 0.0).then_some((first + last).div_ceil(2))
 }

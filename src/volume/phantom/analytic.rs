@@ -25,10 +25,10 @@ pub(super) fn sphere(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let beyond_mm = position_mm(spec, index).length() - radius_mm;
         (0.5 - beyond_mm / (2.0 * ramp_mm)).clamp(0.0, 1.0)
     })?;
-    let truth = format!(
+    let definition = format!(
         "the field is clamp(1/2 - (|p| - R) / (2 w), 0, 1) with R = {radius_mm} mm and w = {ramp_mm} mm, so that its isosurface at 1/2 is the sphere of radius R"
     );
-    Ok((voxels, truth))
+    Ok((voxels, definition))
 }
 
 /// A box of thickness T convolved with a box two voxels wide. The ramp's width is a whole number
@@ -45,10 +45,10 @@ pub(super) fn slab(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         ((p + h).min(half_mm) - (p - h).max(-half_mm)).max(0.0) / (2.0 * h)
     })?;
     let name = ["x", "y", "z"][axis];
-    let truth = format!(
+    let definition = format!(
         "the field is clamp((min({name} + h, T/2) - max({name} - h, -T/2)) / (2 h), 0, 1) with T = {thickness_mm} mm and h = {h} mm, so that its integral along {name} is T and its isosurfaces at 1/2 are, for T >= 2 h, the faces {name} = -T/2 and T/2"
     );
-    Ok((voxels, truth))
+    Ok((voxels, definition))
 }
 
 /// i · step. Whole-number types take the largest whole step that fits their range, which makes
@@ -63,11 +63,11 @@ pub(super) fn ramp(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         even
     };
     let voxels = sampled(spec, |[i, _, _]| f64::from(i) * step / width)?;
-    let truth = format!(
+    let definition = format!(
         "the voxel with index i along x has the value {} + {step} i",
         spec.values().min
     );
-    Ok((voxels, truth))
+    Ok((voxels, definition))
 }
 
 pub(super) fn blob(spec: &PhantomSpec) -> Result<(Voxels, String)> {
@@ -76,8 +76,8 @@ pub(super) fn blob(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let p = position_mm(spec, index) / sigma_mm;
         (-0.5 * p.length_squared()).exp()
     })?;
-    let truth = format!("the field is exp(-|p|^2 / (2 s^2)) with s = {sigma_mm} mm");
-    Ok((voxels, truth))
+    let definition = format!("the field is exp(-|p|^2 / (2 s^2)) with s = {sigma_mm} mm");
+    Ok((voxels, definition))
 }
 
 /// S. Marschner, R. Lobb, "An evaluation of reconstruction filters for volume rendering",
@@ -92,8 +92,8 @@ pub(super) fn marschner_lobb(spec: &PhantomSpec) -> Result<(Voxels, String)> {
         let rings = (TAU * FREQUENCY * (PI / 2.0 * p.truncate().length()).cos()).cos();
         (1.0 - (PI / 2.0 * p.z).sin() + ALPHA * (1.0 + rings)) / (2.0 * (1.0 + ALPHA))
     })?;
-    let truth = "the field is the signal of Marschner and Lobb (1994) with f_M = 6 and alpha = 0.25, on [-1, 1]^3 from the first voxel of each axis to the last".into();
-    Ok((voxels, truth))
+    let definition = "the field is the signal of Marschner and Lobb (1994) with f_M = 6 and alpha = 0.25, on [-1, 1]^3 from the first voxel of each axis to the last".into();
+    Ok((voxels, definition))
 }
 
 /// The voxel at half the voxel count along each axis, rounded down.
@@ -101,6 +101,6 @@ pub(super) fn voxel(spec: &PhantomSpec) -> Result<(Voxels, String)> {
     let centre = spec.dims.array().map(|n| n / 2);
     let voxels = sampled(spec, |index| if index == centre { 1.0 } else { 0.0 })?;
     let [i, j, k] = centre;
-    let truth = format!("the field is 1 at voxel ({i}, {j}, {k}) and 0 at all others");
-    Ok((voxels, truth))
+    let definition = format!("the field is 1 at voxel ({i}, {j}, {k}) and 0 at all others");
+    Ok((voxels, definition))
 }

@@ -8,17 +8,26 @@ use crate::error::{Error, Result};
 /// A test volume whose field is known in closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PhantomKind {
+    /// A ball, whose mid-value isosurface is a sphere.
     Sphere,
+    /// A plate across one axis.
     Slab,
+    /// Values that rise linearly along x.
     Ramp,
+    /// A Gaussian bump.
     Blob,
+    /// The test signal of Marschner and Lobb (1994).
     MarschnerLobb,
+    /// A single bright voxel.
     Voxel,
+    /// White noise.
     Noise,
+    /// A vessel tree that branches by Murray's law.
     Vessels,
 }
 
 impl PhantomKind {
+    /// All kinds.
     pub const ALL: [Self; 8] = [
         Self::Sphere,
         Self::Slab,
@@ -30,7 +39,7 @@ impl PhantomKind {
         Self::Vessels,
     ];
 
-    /// What the user types.
+    /// The kind's name, as users write it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",

@@ -21,12 +21,13 @@ use crate::volume::{Geometry, NonFinite, Rescale, Volume};
 /// A phantom and what is known about it.
 #[derive(Debug)]
 pub struct Phantom {
+    /// The volume itself.
     pub volume: Volume,
     /// Centrelines and radii, of [`PhantomKind::Vessels`] only.
     pub tree: Option<VesselTree>,
     /// One statement of the field, from 0 to 1, or of the values, before noise and rounding;
     /// p = (x, y, z) is mm from the volume's centre.
-    pub truth: String,
+    pub definition: String,
 }
 
 /// Makes a phantom.
@@ -39,7 +40,7 @@ pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     let centre = spec.centre_index();
     let geometry = Geometry::new(-centre * spec.spacing_mm, DMat3::IDENTITY, spec.spacing_mm)?;
     let mut tree = None;
-    let (voxels, mut truth) = match spec.kind {
+    let (voxels, mut definition) = match spec.kind {
         PhantomKind::Sphere => analytic::sphere(spec)?,
         PhantomKind::Slab => analytic::slab(spec)?,
         PhantomKind::Ramp => analytic::ramp(spec)?,
@@ -55,7 +56,7 @@ pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
         }
     };
     if spec.noise > 0.0 {
-        truth.push_str(&format!(
+        definition.push_str(&format!(
             "; Gaussian noise with a standard deviation of {} of the value range is added",
             spec.noise
         ));
@@ -70,6 +71,6 @@ pub fn phantom(spec: &PhantomSpec) -> Result<Phantom> {
     Ok(Phantom {
         volume,
         tree,
-        truth,
+        definition,
     })
 }

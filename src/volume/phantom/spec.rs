@@ -1,4 +1,4 @@
-//! What a phantom is asked to be.
+//! The specification of a phantom.
 
 use glam::DVec3;
 
@@ -12,10 +12,13 @@ use crate::volume::VoxelType;
 /// voxel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhantomSpec {
+    /// What the volume contains.
     pub kind: PhantomKind,
+    /// The number of voxels along each axis.
     pub dims: Dims,
-    /// Each 1e-6 to 1e6.
+    /// The distance of voxel centres along each axis, mm: each 1e-6 to 1e6.
     pub spacing_mm: DVec3,
+    /// The type of the voxels.
     pub voxel_type: VoxelType,
     /// Decides the vessel tree and every noise.
     pub seed: u64,
@@ -60,9 +63,9 @@ impl PhantomSpec {
         }
     }
 
-    /// What the field's 0 and 1 become in each voxel type: u8 0 to 200, u16 0 to 50,000, i16
-    /// −1,000 to 3,000 (as in CT, so that negative values occur), f32 0 to 1. Whole numbers are
-    /// rounded to the nearest.
+    /// The values that the field's 0 and 1 become in each voxel type: u8 0 to 200, u16 0 to 50,000, i16
+    /// −1,000 to 3,000 (as in CT, so that negative values occur), f32 0 to 1. Whole numbers are rounded
+    /// to the nearest.
     pub fn values(&self) -> Range {
         let (min, max) = match self.voxel_type {
             VoxelType::U8 => (0.0, 200.0),
@@ -97,6 +100,8 @@ impl PhantomSpec {
         DVec3::from_array(self.dims.array().map(|n| f64::from(n - 1) / 2.0))
     }
 
+    /// Checks the numbers that a user may give.
+    ///
     /// # Errors
     /// Usage: a length that is not positive, an absurd spacing, a negative noise, an axis beyond 2,
     /// a shape parameter that the kind does not have, more voxels than a phantom may have.

@@ -1,4 +1,4 @@
-//! From a parsed header and its payload to a volume: the one way all formats take.
+//! From a parsed header and its payload to a volume, for all formats.
 
 use std::io::Read;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::volume::{Geometry, Rescale, Volume, VoxelBuffer, VoxelType, Voxels};
 
-/// What a header says about the voxels, whatever its format.
+/// The voxels as a header describes them, whatever its format.
 pub(super) struct Array {
     pub(super) dims: Dims,
     pub(super) frames: Frames,
@@ -51,7 +51,7 @@ impl Array {
         Ok(self.notes.into_iter().fold(volume, Volume::with_note))
     }
 
-    /// As [`Array::read`], the voxels alone.
+    /// Reads the voxels alone; compare [`Array::read`].
     pub(super) fn voxels(&mut self, payload: Payload, request: &Request) -> Result<Voxels> {
         let total = self.total_bytes()?;
         let frame_bytes = self.dims.voxels() * self.element.scalar.bytes();
@@ -119,7 +119,7 @@ impl Array {
         let read = |reader: &mut dyn Read| {
             element::read_voxels(reader, self.element, len, certain, request.progress)
         };
-        let kept = if self.frames.count == 1 {
+        let converted = if self.frames.count == 1 {
             read(&mut reader)?
         } else {
             read(&mut self.frames.pick(&mut reader, size))?
@@ -135,9 +135,9 @@ impl Array {
                 }
             }
         }
-        self.note_loss(kept.loss);
-        self.rescale = self.rescale.after(kept.rescale);
-        Ok(kept.voxels)
+        self.note_loss(converted.loss);
+        self.rescale = self.rescale.after(converted.rescale);
+        Ok(converted.voxels)
     }
 
     fn note_rest(&mut self, what: &str) {
@@ -179,7 +179,7 @@ fn usize_voxels(dims: Dims) -> Result<usize> {
         .map_err(|_| Error::resource(format!("{dims} voxels do not fit this machine's memory")))
 }
 
-/// Colour and vector volumes: what several formats say in their own ways.
+/// Colour and vector volumes: which several formats declare, each in its own form.
 pub(super) fn refuse_components(count: u64, scalar: Option<Scalar>) -> Error {
     let of = scalar.map_or(String::new(), |scalar| format!(" of {}", scalar.name()));
     Error::input(format!(

@@ -1,4 +1,4 @@
-//! What a file stores per voxel, and its way into a voxel type the device reads.
+//! What a file stores per voxel, and its conversion to a voxel type the device reads.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -53,7 +53,7 @@ impl Scalar {
         }
     }
 
-    /// The voxel type it is kept in.
+    /// The voxel type that holds it.
     pub(super) fn voxel_type(self) -> VoxelType {
         match self {
             Self::U8 => VoxelType::U8,
@@ -63,8 +63,8 @@ impl Scalar {
         }
     }
 
-    /// Whether the file's numbers are kept as they are.
-    pub(super) fn is_kept(self) -> bool {
+    /// Whether the file's numbers are stored unchanged.
+    pub(super) fn is_exact(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::I16 | Self::F32)
     }
 }
@@ -100,7 +100,7 @@ impl Element {
 
     /// Whether the bytes can be used where they lie.
     pub(super) fn is_usable_in_place(self) -> bool {
-        self.scalar.is_kept() && (self.endian == Endian::NATIVE || self.scalar.bytes() == 1)
+        self.scalar.is_exact() && (self.endian == Endian::NATIVE || self.scalar.bytes() == 1)
     }
 }
 
@@ -116,12 +116,13 @@ impl fmt::Display for Element {
     }
 }
 
-/// What a conversion to single precision has changed.
+/// The changes that a conversion to single precision has made.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Loss {
     /// Voxels whose number differs from the file's.
     pub(super) changed: u64,
-    /// Of those, finite numbers beyond single precision's range, kept as ±3.4e38.
+    /// The number of finite numbers among them that lie beyond single precision's range and are stored
+    /// as ±3.4e38.
     pub(super) clamped: u64,
     /// The greatest difference among the others, in the file's numbers.
     pub(super) largest: f64,
@@ -129,18 +130,18 @@ pub(super) struct Loss {
     pub(super) width: f64,
 }
 
-/// Voxels as they are kept: the file's number is `rescale.physical(stored)`.
-pub(super) struct Kept {
+/// Voxels as they are stored: the file's number is `rescale.physical(stored)`.
+pub(super) struct Converted {
     pub(super) voxels: Voxels,
     pub(super) rescale: Rescale,
     pub(super) loss: Loss,
 }
 
-impl<T> From<Vec<T>> for Kept
+impl<T> From<Vec<T>> for Converted
 where
     Voxels: From<Vec<T>>,
 {
-    /// The file's own numbers.
+    /// Takes the file's own numbers.
     fn from(voxels: Vec<T>) -> Self {
         Self {
             voxels: voxels.into(),
@@ -150,7 +151,7 @@ where
     }
 }
 
-/// Reads up to the end of `buffer` or of the data; the count tells which.
+/// Reads up to the end of `buffer` or of the data; the count says which.
 fn read_full(reader: &mut dyn Read, buffer: &mut [u8]) -> io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {
@@ -193,7 +194,7 @@ impl Growth {
 const CHUNK: usize = 1 << 18;
 
 /// `count` voxels from the reader, straight into their final place. `certain` says that the bytes
-/// are known to be there, so that all memory may be asked for at once.
+/// are known to be there, so that all memory may be allocated at once.
 ///
 /// # Errors
 /// The data end early or are damaged; memory is short.
@@ -203,14 +204,14 @@ pub(super) fn read_voxels(
     count: usize,
     certain: bool,
     progress: &dyn Progress,
-) -> Result<Kept> {
+) -> Result<Converted> {
     let growth = Growth { count, certain };
     let endian = element.endian;
     Ok(match element.scalar {
-        Scalar::U8 => read_kept::<u8>(reader, endian, &growth, progress)?.into(),
-        Scalar::U16 => read_kept::<u16>(reader, endian, &growth, progress)?.into(),
-        Scalar::I16 => read_kept::<i16>(reader, endian, &growth, progress)?.into(),
-        Scalar::F32 => read_kept::<f32>(reader, endian, &growth, progress)?.into(),
+        Scalar::U8 => read_unconverted::<u8>(reader, endian, &growth, progress)?.into(),
+        Scalar::U16 => read_unconverted::<u16>(reader, endian, &growth, progress)?.into(),
+        Scalar::I16 => read_unconverted::<i16>(reader, endian, &growth, progress)?.into(),
+        Scalar::F32 => read_unconverted::<f32>(reader, endian, &growth, progress)?.into(),
         Scalar::I8 | Scalar::F16 => read_converted(reader, element, &growth, progress)?.into(),
         Scalar::U32 | Scalar::I32 | Scalar::U64 | Scalar::I64 | Scalar::F64 => {
             // As they lie in the file, in the memory in which they are then narrowed.
@@ -219,7 +220,7 @@ pub(super) fn read_voxels(
                 Error::resource(format!("{count} voxels do not fit this machine's memory"))
             })?;
             let growth = Growth { count, certain };
-            let raw = read_kept::<f32>(reader, Endian::NATIVE, &growth, progress)?;
+            let raw = read_unconverted::<f32>(reader, Endian::NATIVE, &growth, progress)?;
             narrow(raw, element)
         }
     })
@@ -240,7 +241,7 @@ fn damaged(cause: &io::Error, read: u64, expected: u64) -> Error {
     ))
 }
 
-fn read_kept<T: Voxel>(
+fn read_unconverted<T: Voxel>(
     reader: &mut dyn Read,
     endian: Endian,
     growth: &Growth,
@@ -322,8 +323,8 @@ mod tests {
             scalar,
             endian: Endian::Little,
         };
-        let kept = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
-        Ok((0..count).map(|i| kept.voxels.stored(i)).collect())
+        let converted = read_voxels(&mut &bytes[..], element, count, false, &Silent)?;
+        Ok((0..count).map(|i| converted.voxels.stored(i)).collect())
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::payload::Payload;
 use crate::error::{Error, Result};
 
 /// The most files of one volume.
-const MOST_FILES: u64 = 1 << 16;
+const MAX_FILES: u64 = 1 << 16;
 
 /// The longest that the names of numbered files are, all together, in bytes.
 const LONGEST_NAMES: usize = 1 << 23;
@@ -16,9 +16,9 @@ const LONGEST_NAMES: usize = 1 << 23;
 /// Where a header says its voxels are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum DataFiles {
-    /// Right after the header.
+    /// The data follow the header in the same file.
     Attached,
-    /// In files beside the header, one after the other.
+    /// The data are in files beside the header, one after the other.
     Files(Vec<String>),
 }
 
@@ -44,7 +44,7 @@ pub(super) fn numbered(text: &str) -> Result<Option<Vec<String>>> {
         return Err(wrong("this step never arrives"));
     }
     let count = distance / i128::from(step) + 1;
-    if count > i128::from(MOST_FILES) {
+    if count > i128::from(MAX_FILES) {
         return Err(wrong("too many files"));
     }
     let mut names = Vec::new();
@@ -113,7 +113,7 @@ pub(super) fn joined(
         return open(&path).map_err(|error| error.at(path.display()));
     }
     let count = names.len() as u64;
-    if count == 0 || count > MOST_FILES || !total.is_multiple_of(count) {
+    if count == 0 || count > MAX_FILES || !total.is_multiple_of(count) {
         return Err(Error::input(format!(
             "{total} bytes of voxels announced in {count} data files: they cannot have equal parts"
         )));

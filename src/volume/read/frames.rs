@@ -16,8 +16,9 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// Of an array's sizes (the first axis fastest), `frame_axis` counts the frames; the others, at
-    /// most three, are the volume's. The note says which of several frames is read.
+    /// Chooses a frame of an array with these sizes (the first axis fastest): `frame_axis` counts the
+    /// frames; the others, at most three, are the volume's. The note says which of several frames is
+    /// read.
     ///
     /// # Errors
     /// More than three axes besides, sizes out of bounds, a frame which the file does not have.
@@ -49,11 +50,13 @@ impl Frames {
         let chosen = u64::from(frame);
         if chosen >= count {
             return Err(if count == 1 {
-                Error::usage(format!("frame {chosen} asked for, the file has one volume"))
-                    .hint("leave --frame away")
+                Error::usage(format!(
+                    "frame {chosen} was requested, but the file has one volume"
+                ))
+                .hint("leave --frame away")
             } else {
                 Error::usage(format!(
-                    "frame {chosen} asked for, the file has frames 0 to {}",
+                    "frame {chosen} was requested, but the file has frames 0 to {}",
                     count - 1
                 ))
             });

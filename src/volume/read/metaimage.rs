@@ -115,7 +115,7 @@ impl Fields {
         })
     }
 
-    /// In mm, LPS (MetaImage's own space, as ITK reads it); of more axes the first three.
+    /// The geometry in mm, LPS (MetaImage's own space, as ITK reads it); of more axes the first three.
     fn geometry(&self, axes: usize) -> Result<Geometry> {
         let mut origin_mm = DVec3::ZERO;
         let mut spacing_mm = DVec3::ONE;

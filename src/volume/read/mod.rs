@@ -2,7 +2,7 @@
 //! formats is looked through.
 //!
 //! Each format's file turns its header into an `Array` (sizes, number type, geometry) and a
-//! `Payload` (where the bytes come from); from there on all go the same way.
+//! `Payload` (where the bytes come from); from there on all are read alike.
 
 mod array;
 mod element;
@@ -32,12 +32,14 @@ use crate::extent::Dims;
 use crate::progress::{Progress, Silent};
 use crate::volume::{NonFinite, Volume, VoxelType};
 
-/// What the user may say about reading a file.
+/// The user's options for reading a file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadOptions {
-    /// Which volume of a series (4-D) is read; 0 is the first.
+    /// The index of the volume of a series (4-D) that is read; 0 is the first.
     pub frame: u32,
+    /// The treatment of NaN and ±Inf voxels.
     pub non_finite: NonFinite,
+    /// The layout of a headerless file.
     pub raw: RawLayout,
 }
 
@@ -49,7 +51,7 @@ struct Request<'a> {
     accept: Accept<'a>,
 }
 
-/// Whether whoever asks can do with a volume of this size, whose voxels will be held as this type.
+/// A check of whether the caller can use a volume of this size, whose voxels will be held as this type.
 pub type Accept<'a> = &'a dyn Fn(Dims, VoxelType) -> Result<()>;
 
 /// Reads a volume file: NRRD, MetaImage, NIfTI-1/2, NumPy (.npy, .npz) or headerless voxels, each
@@ -74,7 +76,8 @@ impl Volume {
     }
 }
 
-/// As [`read`], if `accept` accepts what the header says, which it is asked before any voxel is read.
+/// Reads a volume as [`read`] does, if `accept` accepts what the header says; it is called before any
+/// voxel is read.
 ///
 /// # Errors
 /// Those of [`read`] and of `accept`, behind the path.
@@ -110,7 +113,7 @@ fn shortened(error: Error) -> Error {
 }
 
 fn read_source(source: Source, request: &Request) -> Result<Volume> {
-    if raw::is_asked_for(request) {
+    if raw::is_requested(request) {
         return raw::read(source, request);
     }
     let head = source.head();

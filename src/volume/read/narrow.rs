@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use rayon::prelude::*;
 
-use super::element::{Element, Endian, Kept, Loss, Scalar};
+use super::element::{Converted, Element, Endian, Loss, Scalar};
 use crate::volume::Rescale;
 
 /// Whole numbers so far apart are exact in single precision when counted from about their middle:
@@ -15,8 +15,8 @@ trait Wide: Pod + Send + Sync + PartialOrd {
     fn nearest(self) -> f64;
     /// `self − offset`, rounded once to double precision.
     fn above(self, offset: f64) -> f64;
-    /// What `kept`, counted from the offset, leaves of it.
-    fn left_over(self, offset: f64, kept: f32) -> f64;
+    /// The remainder that `converted`, counted from the offset, leaves.
+    fn left_over(self, offset: f64, converted: f32) -> f64;
 }
 
 macro_rules! whole {
@@ -31,8 +31,8 @@ macro_rules! whole {
                 (i128::from(self) - offset as i128) as f64
             }
 
-            fn left_over(self, offset: f64, kept: f32) -> f64 {
-                (i128::from(self) - offset as i128 - kept as i128) as f64
+            fn left_over(self, offset: f64, converted: f32) -> f64 {
+                (i128::from(self) - offset as i128 - converted as i128) as f64
             }
         }
     )*};
@@ -49,14 +49,14 @@ impl Wide for f64 {
         self - offset
     }
 
-    fn left_over(self, offset: f64, kept: f32) -> f64 {
-        self - offset - f64::from(kept)
+    fn left_over(self, offset: f64, converted: f32) -> f64 {
+        self - offset - f64::from(converted)
     }
 }
 
 /// The voxels whose bytes, in the file's type and order, lie in `raw`. They are narrowed in place: a
 /// type of 32 bits takes no more memory than its voxels, one of 64 bits the file's own size.
-pub(super) fn narrow(raw: Vec<f32>, element: Element) -> Kept {
+pub(super) fn narrow(raw: Vec<f32>, element: Element) -> Converted {
     let endian = element.endian;
     match element.scalar {
         Scalar::U32 => narrow_from::<u32>(raw, endian),
@@ -70,7 +70,7 @@ pub(super) fn narrow(raw: Vec<f32>, element: Element) -> Kept {
     }
 }
 
-fn narrow_from<T: Wide>(mut raw: Vec<f32>, endian: Endian) -> Kept {
+fn narrow_from<T: Wide>(mut raw: Vec<f32>, endian: Endian) -> Converted {
     let size = size_of::<T>();
     let number = |bytes: &[u8]| -> T {
         let mut number: T = bytemuck::pod_read_unaligned(bytes);
@@ -95,22 +95,22 @@ fn narrow_from<T: Wide>(mut raw: Vec<f32>, endian: Endian) -> Kept {
     }
     raw.truncate(count);
     raw.shrink_to_fit();
-    Kept {
+    Converted {
         rescale,
         loss,
         ..raw.into()
     }
 }
 
-/// What decides how numbers are kept.
+/// The properties that decide how numbers are stored.
 #[derive(Debug, Clone, Copy)]
 struct Survey {
-    /// Of the finite numbers.
+    /// The minimum of the finite numbers.
     min: f64,
     max: f64,
-    /// Whether single precision holds them all as they are.
+    /// Whether single precision holds all numbers exactly.
     fits: bool,
-    /// Whether all are whole.
+    /// Whether all numbers are whole.
     whole: bool,
 }
 
@@ -173,7 +173,7 @@ impl Survey {
     }
 }
 
-/// A number as it is kept, with what that loses.
+/// A number as it is stored, with what that loses.
 fn single<T: Wide>(number: T, rescale: Rescale, loss: &mut Loss) -> f32 {
     let single = number.above(rescale.intercept) as f32;
     let lost = number.left_over(rescale.intercept, single).abs();
@@ -198,13 +198,15 @@ mod tests {
         let mut raw = vec![0.0_f32; size_of_val(numbers) / 4];
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut raw);
         bytes.copy_from_slice(bytemuck::cast_slice(numbers));
-        let kept = narrow(raw, Element::native(scalar));
-        let stored = (0..numbers.len()).map(|i| kept.voxels.stored(i)).collect();
-        (stored, kept.rescale, kept.loss)
+        let converted = narrow(raw, Element::native(scalar));
+        let stored = (0..numbers.len())
+            .map(|i| converted.voxels.stored(i))
+            .collect();
+        (stored, converted.rescale, converted.loss)
     }
 
     #[test]
-    fn whole_numbers_far_from_zero_are_kept_to_the_last_digit() {
+    fn whole_numbers_far_from_zero_are_stored_to_the_last_digit() {
         let check = |(stored, rescale, loss): (Vec<f64>, Rescale, Loss), values: &[i128]| {
             assert_eq!((loss.changed, loss.largest), (0, 0.0));
             let physical = stored.iter().map(|&v| rescale.physical(v) as i128);
@@ -267,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn doubles_beyond_single_precision_are_clamped_and_infinities_kept() {
+    fn doubles_beyond_single_precision_are_clamped_and_infinities_stay() {
         let numbers = [1e300, -1e300, f64::INFINITY, 0.5, f64::NAN];
         let (stored, _, loss) = narrowed(&numbers, Scalar::F64);
         let largest = f64::from(f32::MAX);
@@ -287,8 +289,8 @@ mod tests {
             (1.5_f64.to_le_bytes(), Endian::Little),
             (1.5_f64.to_be_bytes(), Endian::Big),
         ] {
-            let kept = narrow(raw(bytes), element(endian));
-            assert_eq!(kept.voxels.stored(0), 1.5);
+            let converted = narrow(raw(bytes), element(endian));
+            assert_eq!(converted.voxels.stored(0), 1.5);
         }
     }
 }

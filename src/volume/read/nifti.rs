@@ -46,7 +46,7 @@ impl Bytes<'_> {
     getter!(f64, f64);
 }
 
-/// The header's size (which tells the version) and byte order.
+/// The header's size (which gives the version) and byte order.
 fn size_and_endian(head: &[u8]) -> Option<(u32, Endian)> {
     let size = head.first_chunk::<4>()?;
     [Endian::Little, Endian::Big]
@@ -227,7 +227,7 @@ impl Header {
             return sizes;
         }
         notes.push(format!(
-            "the voxel size {sizes} is taken as 1 where it is no length"
+            "the voxel size {sizes} is taken as 1 where it is not a length"
         ));
         DVec3::from_array(
             sizes
@@ -255,7 +255,7 @@ impl Header {
         }
     }
 
-    /// As [`Header::qform`], by the sform ("method 3").
+    /// The orientation by the sform ("method 3"); compare [`Header::qform`].
     fn sform(&self) -> DAffine3 {
         let column = |c: usize| DVec3::new(self.srow[0][c], self.srow[1][c], self.srow[2][c]);
         DAffine3 {
@@ -310,8 +310,8 @@ impl Header {
         })
     }
 
-    /// In mm, LPS: the sform where it is set and spans space, else the qform, else the voxel sizes
-    /// alone with axes along the world's (as ITK does).
+    /// The geometry in mm, LPS: the sform if it is set and spans space, else the qform, else the voxel
+    /// sizes alone with axes along the world's (as ITK does).
     fn geometry(&self, notes: &mut Vec<String>) -> Result<Geometry> {
         let unit_mm = match self.units & 7 {
             1 => 1000.0,
@@ -422,7 +422,7 @@ pub(super) fn read_header_beside(header: &Path, request: &Request) -> Result<Vol
         let source = Source::open(header)?;
         if !is_nifti(source.head()) {
             return Err(Error::input(
-                "is no NIfTI header (of such pairs, Analyze 7.5 is not read)",
+                "is not a NIfTI header (of such pairs, Analyze 7.5 is not supported)",
             ));
         }
         let request = Request {

@@ -13,16 +13,16 @@ use super::source::Source;
 use crate::error::{Error, Result};
 use crate::volume::Volume;
 
-/// What people call the array that is the volume, the likeliest first.
+/// Common names of the array that is the volume, the likeliest first.
 const LIKELY_NAMES: [&str; 8] = [
     "volume", "vol", "data", "image", "img", "voxels", "array", "arr_0",
 ];
 
-/// The most arrays looked at.
-const MOST_ARRAYS: usize = 4096;
+/// The most arrays that are considered.
+const MAX_ARRAYS: usize = 4096;
 
 /// The most arrays named where none will do.
-const MOST_NAMED: usize = 10;
+const MAX_NAMED: usize = 10;
 
 pub(super) fn is_zip(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06")
@@ -67,7 +67,7 @@ pub(super) fn read(source: &Source, request: &Request) -> Result<Volume> {
     for entry in &entries {
         // Decoders are large: an array's is dropped again before the next one's is made.
         let (header, _) = entry.open()?;
-        if shapes.len() < MOST_NAMED {
+        if shapes.len() < MAX_NAMED {
             shapes.push(format!("{} {:?}", entry.name, header.shape));
         }
         let rank = LIKELY_NAMES
@@ -103,7 +103,7 @@ fn entries(file: &MappedBytes) -> Result<Vec<Entry>> {
     let mut archive = ZipArchive::new(Cursor::new(file.as_slice())).map_err(damaged)?;
     let mut entries = Vec::new();
     let mut places = Vec::new();
-    for index in 0..archive.len().min(MOST_ARRAYS) {
+    for index in 0..archive.len().min(MAX_ARRAYS) {
         let member = archive.by_index_raw(index).map_err(damaged)?;
         let name = String::from_utf8_lossy(member.name_raw()).into_owned();
         let Some(name) = name.strip_suffix(".npy") else {

@@ -10,18 +10,18 @@ use crate::volume::Geometry;
 
 /// The array's axes, the first fastest.
 pub(super) struct Axes {
-    /// Without axes of one entry that are not space.
+    /// The sizes, without axes of one entry that are not space.
     pub(super) sizes: Vec<u64>,
     /// The axis that counts frames.
     pub(super) frame_axis: Option<usize>,
-    /// Which of the header's axes are the volume's: at most three.
+    /// The header's axes that are the volume's: at most three.
     space_axes: Vec<usize>,
     /// The header's axis directions; `none` where an axis is not space.
     directions: Option<Vec<Option<Vec<f64>>>>,
 }
 
 /// The most axes: NRRD's own limit.
-const MOST_AXES: usize = 16;
+const MAX_AXES: usize = 16;
 
 /// Kinds of axes whose entries are one voxel's components rather than voxels.
 fn is_colour(kind: &str) -> bool {
@@ -33,12 +33,12 @@ fn is_domain(kind: &str) -> bool {
     matches!(kind, "domain" | "space" | "???" | "none" | "unknown")
 }
 
-/// With four components the last is time, and a direction in it alone leads nowhere in space.
+/// Whether a direction leads anywhere in space. With four components the last is time.
 fn is_spatial(direction: &[f64]) -> bool {
     direction.len() != 4 || direction[..3].iter().any(|&component| component != 0.0)
 }
 
-/// What each axis is, in lower case, where the header says so.
+/// The kind of each axis, in lower case, if the header gives it.
 fn kinds_of(fields: &Fields, dimension: usize) -> Result<Option<Vec<String>>> {
     let kinds: Option<Vec<String>> = fields.get("kinds").map(|kinds| {
         kinds
@@ -94,7 +94,7 @@ fn check_components(
 impl Axes {
     pub(super) fn parse(fields: &Fields) -> Result<Self> {
         let dimension: usize = number("dimension", fields.need("dimension")?)?;
-        if !(1..=MOST_AXES).contains(&dimension) {
+        if !(1..=MAX_AXES).contains(&dimension) {
             return Err(Error::input(format!("an NRRD array of {dimension} axes")));
         }
         let sizes: Vec<u64> = exactly("sizes", fields.need("sizes")?, dimension)?;
@@ -128,13 +128,16 @@ impl Axes {
         }
         check_components(&sizes, kinds.as_deref(), directions.is_some(), frame_axis)?;
 
-        let kept: Vec<usize> = (0..dimension)
+        let remaining: Vec<usize> = (0..dimension)
             .filter(|axis| space_axes.contains(axis) || frame_axis == Some(*axis))
             .collect();
         Ok(Self {
-            sizes: kept.iter().map(|&axis| sizes[axis]).collect(),
-            frame_axis: frame_axis
-                .and_then(|axis| kept.iter().position(|&kept_axis| kept_axis == axis)),
+            sizes: remaining.iter().map(|&axis| sizes[axis]).collect(),
+            frame_axis: frame_axis.and_then(|axis| {
+                remaining
+                    .iter()
+                    .position(|&remaining_axis| remaining_axis == axis)
+            }),
             space_axes,
             directions,
         })
@@ -214,7 +217,7 @@ fn first_three(field: &str, vector: &[f64]) -> Result<DVec3> {
 
 /// `(1,0,0) none (0, 1, 0)`.
 fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
-    let wrong = || Error::input(format!("the NRRD header's '{text}' are no vectors"));
+    let wrong = || Error::input(format!("the NRRD header's '{text}' are not vectors"));
     let mut found = Vec::new();
     let mut rest = text.trim();
     while !rest.is_empty() {
@@ -233,14 +236,14 @@ fn vectors(text: &str) -> Result<Vec<Option<Vec<f64>>>> {
             found.push(None);
             rest = rest_after_none.trim_start();
         }
-        if found.len() > MOST_AXES {
+        if found.len() > MAX_AXES {
             return Err(wrong());
         }
     }
     Ok(found)
 }
 
-/// Lengths are taken as mm whatever the header calls them, as ITK does; the user is told.
+/// Lengths are taken as mm whatever the header calls them, as ITK does; a note says so.
 fn note_units(fields: &Fields, notes: &mut Vec<String>) {
     let Some(text) = fields.get("spaceunits") else {
         return;

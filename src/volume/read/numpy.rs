@@ -21,17 +21,17 @@ use crate::with_voxels;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The longest header: NumPy itself reads no longer one unless told to.
+/// The longest header: NumPy itself reads no longer one by default.
 const LONGEST_HEADER: usize = 10_000;
 
 /// The most axes: NumPy's own limit.
-const MOST_AXES: usize = 64;
+const MAX_AXES: usize = 64;
 
 pub(super) fn is_npy(head: &[u8]) -> bool {
     head.starts_with(MAGIC)
 }
 
-/// What stands before an array's numbers.
+/// The header that precedes an array's numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Header {
     descr: String,
@@ -65,7 +65,7 @@ impl Header {
         let mut start = [0; 8];
         reader.read_exact(&mut start).map_err(cut_off)?;
         if !start.starts_with(MAGIC) {
-            return Err(Error::input("this is no .npy array"));
+            return Err(Error::input("not a .npy array"));
         }
         let length = match start[6] {
             1 => {
@@ -86,7 +86,7 @@ impl Header {
         };
         if length > LONGEST_HEADER {
             return Err(Error::input(format!(
-                "the .npy header announces {length} bytes for itself: {LONGEST_HEADER} are the most"
+                "the .npy header announces {length} bytes for itself: at most {LONGEST_HEADER} are read"
             )));
         }
         let mut text = vec![0; length];
@@ -124,14 +124,14 @@ impl Header {
                     .split(',')
                     .map(str::trim)
                     .filter(|size| !size.is_empty())
-                    .take(MOST_AXES + 1)
+                    .take(MAX_AXES + 1)
                     .map(|size| size.trim_end_matches('L').parse().ok())
                     .collect()
             })
             .ok_or_else(|| Error::input("the .npy header's shape cannot be read"))?;
-        if shape.len() > MOST_AXES {
+        if shape.len() > MAX_AXES {
             return Err(Error::input(format!(
-                "the .npy header announces more than {MOST_AXES} axes"
+                "the .npy header announces more than {MAX_AXES} axes"
             )));
         }
         Ok(Self {

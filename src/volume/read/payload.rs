@@ -42,7 +42,7 @@ impl MappedBytes {
         (self.end - self.start) as u64
     }
 
-    /// Without the first `skip` bytes; fails when there are fewer.
+    /// Skips the first `skip` bytes; fails when there are fewer.
     pub(super) fn after(mut self, skip: u64) -> Result<Self> {
         if skip > self.len() {
             return Err(Error::input(format!(
@@ -81,9 +81,9 @@ impl BufRead for MappedBytes {
 
 /// Bytes from a header's end (or a data file's start) on.
 pub(super) enum Payload {
-    /// They lie in a file as they are.
+    /// The bytes lie in a file unchanged.
     Mapped(MappedBytes),
-    /// They come out of a decoder; no more than `at_most`.
+    /// The bytes come out of a decoder; no more than `at_most`.
     Stream {
         reader: Box<dyn BufRead>,
         at_most: u64,
@@ -109,7 +109,7 @@ impl Payload {
         }
     }
 
-    /// What comes out of a decoder of `length` deflated bytes.
+    /// The output of a decoder of `length` deflated bytes.
     pub(super) fn unzipped(decoder: impl Read + 'static, length: u64) -> Self {
         Self::stream(decoder, length.saturating_mul(DEFLATE_RATIO))
     }
@@ -169,7 +169,7 @@ impl Payload {
         Self::stream(HexBytes(reader), length)
     }
 
-    /// Without the first `count` bytes.
+    /// Skips the first `count` bytes.
     ///
     /// # Errors
     /// There are fewer, or they are damaged.
@@ -202,7 +202,7 @@ impl Payload {
         }
     }
 
-    /// Without the first `count` lines.
+    /// Skips the first `count` lines.
     pub(super) fn skip_lines(self, count: u64) -> Result<Self> {
         let missing =
             |line| Error::input(format!("{count} lines to skip, but the data have {line}"));

@@ -15,8 +15,8 @@ use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::volume::{Geometry, Rescale, Volume};
 
-/// What the user says about a headerless file (`--raw-size`, `--raw-type`, `--raw-spacing`,
-/// `--raw-offset`). Any of them makes the file a headerless one, whatever it looks like.
+/// The user's description of a headerless file (`--raw-size`, `--raw-type`, `--raw-spacing`,
+/// `--raw-offset`). Any of these options makes the file a headerless one, whatever it looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RawLayout {
     /// Voxels along x, y, z; x runs fastest in the file.
@@ -34,7 +34,7 @@ impl RawLayout {
         *self != Self::default()
     }
 
-    /// Each field that is absent taken from `other`.
+    /// Fills each absent field from `other`.
     fn or(self, other: Self) -> Self {
         Self {
             size: self.size.or(other.size),
@@ -44,7 +44,7 @@ impl RawLayout {
         }
     }
 
-    /// What a name such as `head_256x256x256_uint8.raw.gz` says.
+    /// The layout that a name such as `head_256x256x256_uint8.raw.gz` describes.
     fn from_name(path: &Path) -> Self {
         let name = path
             .file_name()
@@ -64,6 +64,7 @@ impl RawLayout {
 pub struct RawSize(Dims);
 
 impl RawSize {
+    /// The sizes, in voxels.
     pub fn dims(self) -> Dims {
         self.0
     }
@@ -174,7 +175,7 @@ fn long_type_name(word: &str) -> Option<RawType> {
 }
 
 /// Whether the flags make this file a headerless one.
-pub(super) fn is_asked_for(request: &Request) -> bool {
+pub(super) fn is_requested(request: &Request) -> bool {
     request.options.raw.is_given()
 }
 
@@ -217,15 +218,15 @@ pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
 }
 
 /// The most bytes counted for a hint.
-const MOST_COUNTED: u64 = 1 << 28;
+const MAX_COUNTED: u64 = 1 << 28;
 
-/// What to say of a file without any description: the flags it needs, with a guess at its size.
+/// The error of a file without any description: the flags it needs, with a guess at its size.
 pub(super) fn unrecognised(source: Source) -> Error {
     let error = Error::input(
-        "this is none of the formats NRRD, MetaImage, NIfTI, NumPy, and its name does not describe headerless voxels",
+        "not in the format NRRD, MetaImage, NIfTI or NumPy, and its name does not describe headerless voxels",
     );
     let flags = "for headerless voxels give --raw-size NXxNYxNZ and --raw-type (u8, i16, f32, …)";
-    let guess = match source.decoded_len(MOST_COUNTED) {
+    let guess = match source.decoded_len(MAX_COUNTED) {
         Ok(Some(length)) => cube_guess(length),
         _ => None,
     };

@@ -18,7 +18,7 @@ pub(super) struct Source {
     unzipped: Option<Unzipped>,
 }
 
-/// The decoded start, and the decoder that goes on from there: nothing is decoded twice.
+/// The decoded start, and the decoder that continues from there: nothing is decoded twice.
 struct Unzipped {
     head: Vec<u8>,
     rest: GzipMembers<MappedBytes>,

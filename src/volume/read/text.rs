@@ -25,7 +25,7 @@ pub(super) fn numbers<T: FromStr>(field: &str, text: &str) -> Result<Vec<T>> {
         .collect()
 }
 
-/// As [`numbers`], exactly `count` of them.
+/// Parses exactly `count` numbers; compare [`numbers`].
 pub(super) fn exactly<T: FromStr>(field: &str, text: &str, count: usize) -> Result<Vec<T>> {
     let found = numbers(field, text)?;
     if found.len() != count {
@@ -48,7 +48,7 @@ pub(super) struct TextNumbers<R> {
 }
 
 impl<R: BufRead> TextNumbers<R> {
-    /// Longer words are no numbers.
+    /// The longest word that can be a number.
     const LONGEST_WORD: usize = 400;
 
     pub(super) fn new(text: R, scalar: Scalar) -> Self {

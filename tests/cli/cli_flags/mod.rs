@@ -54,7 +54,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         .collect();
         let at = |said: &String| said.starts_with("error: keys.toml:2: ");
         assert!(refusals.iter().any(at), "{key}: {refusals:?}");
-        let unknown = |said: &String| said.contains("no option of a scene");
+        let unknown = |said: &String| said.contains("not an option of a scene");
         assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
     }
     // The controls: keys that no command has.
@@ -88,7 +88,7 @@ fn an_unknown_key_is_refused_with_the_nearest_one() {
     ] {
         place.write("keys.toml", &format!("{key} = 1\n"));
         let said = place.refused("compare --scene keys.toml", 2);
-        let error = format!("error: keys.toml:1: '{key}' is no option of a scene");
+        let error = format!("error: keys.toml:1: '{key}' is not an option of a scene");
         assert!(said.contains(&error) && said.contains(hint), "{said}");
     }
 }
@@ -97,8 +97,8 @@ fn an_unknown_key_is_refused_with_the_nearest_one() {
 fn what_is_no_whole_number_is_refused_in_words() {
     let place = Place::empty();
     for (wrong, reported) in [
-        ("1.5", "'1.5' is not a whole number from 0 on"),
-        ("-1", "'-1' is not a whole number from 0 on"),
+        ("1.5", "'1.5' is not a whole number of at least 0"),
+        ("-1", "'-1' is not a whole number of at least 0"),
         (
             "99999999999999999999",
             "'99999999999999999999' is too large a number",
@@ -110,7 +110,7 @@ fn what_is_no_whole_number_is_refused_in_words() {
     place.write("seed.toml", "seed = 2.5\n");
     let said = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);
     assert!(
-        said.contains("'2.5' is not a whole number from 0 on"),
+        said.contains("'2.5' is not a whole number of at least 0"),
         "{said}"
     );
 }

@@ -144,7 +144,7 @@ fn completions_and_the_manual_hold_every_command_and_option() {
     let place = Place::empty();
     let man = place.done("man");
     let bash = place.done("completion bash");
-    // A hyphen in a manual is written so that it is none of typography.
+    // A hyphen in a manual is written so that it stays an ASCII hyphen.
     let in_man = |flag: &str| man.contains(&flag.replace('-', "\\-"));
     let mut flags = 0;
     for command in [

@@ -28,10 +28,11 @@ fn a_cap_lies_on_its_plane_and_has_its_normal() {
             for (pixel, depth_mm) in depths_mm(&frames[0]).into_iter().enumerate() {
                 let (i, j) = (pixel as u32 % 12, pixel as u32 / 12);
                 let ray = camera.ray(size, f64::from(i) + 0.5, f64::from(j) + 0.5);
-                let truth_mm = (point - ray.origin_world).dot(normal) / ray.dir_world.dot(normal);
+                let expected_mm =
+                    (point - ray.origin_world).dot(normal) / ray.dir_world.dot(normal);
                 assert!(
-                    (depth_mm - truth_mm).abs() < engine.depth_voxels,
-                    "{}: {depth_mm}, not {truth_mm}",
+                    (depth_mm - expected_mm).abs() < engine.depth_voxels,
+                    "{}: {depth_mm}, not {expected_mm}",
                     engine.name
                 );
                 let seen = DVec3::from_array(normals[pixel].map(f64::from));
@@ -94,12 +95,12 @@ fn crossing_a_plane_leaves_no_hole() {
         let lengths: Vec<Vec<f64>> = frames.iter().map(|f| lengths_mm(f).collect()).collect();
         let apart = |a: &[f64], b: &[f64]| {
             let pairs = a.iter().zip(b);
-            pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+            pairs.fold(0.0, |max, (a, b)| f64::max(max, (a - b).abs()))
         };
         for pair in lengths.windows(2) {
             assert!(apart(&pair[0], &pair[1]) < 0.05, "{}", engine.name);
         }
-        // The control: over all of the way it changes more.
+        // The control: over the whole distance it changes more.
         assert!(apart(&lengths[0], &lengths[20]) > 0.05, "{}", engine.name);
     }
 }

@@ -4,9 +4,9 @@
 use crate::common;
 
 mod caps;
-mod kept;
 mod points;
 mod special;
+mod volumes;
 
 use angioray::extent::ImageSize;
 use angioray::frame::{DEPTH, Frame};
@@ -19,7 +19,7 @@ use angioray::volume::{Geometry, Volume};
 use common::{on_device, on_reference, volume_with};
 use glam::{DMat3, DQuat, DVec3};
 
-/// What renders, and how far its depths (voxels) may be from the truth.
+/// What renders, and how far its depths (voxels) may be from the expected ones.
 struct Engine {
     name: &'static str,
     device: Option<Device>,

@@ -26,7 +26,7 @@ fn random_set(random: &mut Random, center: DVec3, radius_mm: f64) -> Vec<ClipPla
 }
 
 /// The kept points of a ray, mm from its origin: the first and the last.
-fn kept_points(
+fn visible_points(
     volume: &Volume,
     planes: &[ClipPlane],
     ray: angioray::scene::Ray,
@@ -34,7 +34,7 @@ fn kept_points(
 ) -> Option<(f64, f64)> {
     let index_from_world = volume.geometry().index_from_world();
     let last = DVec3::from_array(volume.dims().usize().map(|n| n as f64 - 1.0));
-    let is_kept = |mm: &f64| {
+    let is_visible = |mm: &f64| {
         let p_world = ray.origin_world + ray.dir_world * *mm;
         let p = index_from_world.transform_point3(p_world);
         let in_volume = p.cmpge(DVec3::ZERO).all() && p.cmple(last).all();
@@ -44,9 +44,11 @@ fn kept_points(
                 .all(|c| c.normal_world().dot(p_world) + c.offset() >= 0.0)
     };
     let steps = (farthest_mm / APART_MM) as u32;
-    let mut kept = (0..steps).map(|k| f64::from(k) * APART_MM).filter(is_kept);
-    let first = kept.next()?;
-    Some((first, kept.next_back().unwrap_or(first)))
+    let mut visible = (0..steps)
+        .map(|k| f64::from(k) * APART_MM)
+        .filter(is_visible);
+    let first = visible.next()?;
+    Some((first, visible.next_back().unwrap_or(first)))
 }
 
 /// Pixels whose interval is not where the kept points are, and pixels that see something.
@@ -63,7 +65,7 @@ fn compare(
     for (pixel, (depth_mm, length_mm)) in depths.iter().zip(lengths_mm(through)).enumerate() {
         let (i, j) = (pixel as u32 % size.width(), pixel as u32 / size.width());
         let ray = camera.ray(size, f64::from(i) + 0.5, f64::from(j) + 0.5);
-        let right = match kept_points(volume, planes, ray, farthest_mm) {
+        let right = match visible_points(volume, planes, ray, farthest_mm) {
             // A shorter interval may lie between two points.
             None => length_mm < 1.1 * APART_MM,
             Some((first_mm, last_mm)) => {

@@ -95,10 +95,10 @@ fn planes_through_the_eye_keep_whole_rays_and_are_never_capped() {
                 }
                 kept += usize::from(side > 0.0);
                 dropped += usize::from(side < 0.0);
-                let truth_mm = if side > 0.0 { all[pixel] } else { 0.0 };
+                let expected_mm = if side > 0.0 { all[pixel] } else { 0.0 };
                 assert!(
-                    (length_mm - truth_mm).abs() < 1e-3,
-                    "{}: {length_mm}, not {truth_mm}",
+                    (length_mm - expected_mm).abs() < 1e-3,
+                    "{}: {length_mm}, not {expected_mm}",
                     engine.name
                 );
             }
@@ -143,7 +143,7 @@ fn redundant_contradictory_and_many_planes() {
         let depths: Vec<Vec<f64>> = frames.iter().map(depths_mm).collect();
         let apart = |a: &[f64], b: &[f64]| {
             let pairs = a.iter().zip(b).filter(|(a, b)| a != b);
-            pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+            pairs.fold(0.0, |max, (a, b)| f64::max(max, (a - b).abs()))
         };
         assert!(depths[0].iter().filter(|d| d.is_finite()).count() > 100);
         assert_eq!(depths[1], depths[0], "{}", engine.name);
@@ -178,10 +178,10 @@ fn planes_far_from_the_origin_cut_as_near_it() {
         let near = depths(DVec3::ZERO, 0.0);
         let apart = |other: Vec<f64>| {
             let pairs = near.iter().zip(other).filter(|(a, b)| *a != b);
-            pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+            pairs.fold(0.0, |max, (a, b)| f64::max(max, (a - b).abs()))
         };
-        let most = apart(depths(far, 0.0));
-        assert!(most < engine.depth_voxels, "{}: {most}", engine.name);
+        let max = apart(depths(far, 0.0));
+        assert!(max < engine.depth_voxels, "{}: {max}", engine.name);
         // The control: a hundredth of a millimetre beside.
         assert!(apart(depths(far, 0.01)) > 5e-3, "{}", engine.name);
     }
@@ -215,7 +215,7 @@ fn a_plane_beyond_all_numbers_keeps_all_or_nothing() {
     }
 }
 
-/// Planes that cut a hair before and behind the walls between cells, where the voxels are the iso value
+/// Planes that cut a hair before and behind the faces between cells, where the voxels are the iso value
 /// itself: what the certificate proves of a clipped ray is so.
 #[test]
 fn what_is_proven_of_clipped_rays_is_so() {
@@ -226,14 +226,14 @@ fn what_is_proven_of_clipped_rays_is_so() {
     let volume = common::volume_of([13, 12, 12], |x, _, _| [2u8, 3, 0][x as usize % 3]);
     let size = ImageSize::new(24, 24).unwrap();
     let mut counted = Proven::default();
-    for wall in [3.0, 6.0, 9.0_f32] {
+    for face in [3.0, 6.0, 9.0_f32] {
         for ulps in -4..=4 {
-            let cut = f64::from(f32::from_bits((wall.to_bits() as i32 + ulps) as u32));
-            let wall = f64::from(wall);
+            let cut = f64::from(f32::from_bits((face.to_bits() as i32 + ulps) as u32));
+            let face = f64::from(face);
             // Kept from the cut on and to the middle of a cell; and the other way.
             let slabs = [
-                [plane(DVec3::X, -cut), plane(DVec3::NEG_X, wall + 1.5)],
-                [plane(DVec3::NEG_X, cut), plane(DVec3::X, 0.75 - wall)],
+                [plane(DVec3::X, -cut), plane(DVec3::NEG_X, face + 1.5)],
+                [plane(DVec3::NEG_X, cut), plane(DVec3::X, 0.75 - face)],
             ];
             for planes in slabs {
                 for toward_eye in [DVec3::NEG_X, DVec3::new(-3.0, 1.0, 0.7), DVec3::X] {
@@ -279,14 +279,14 @@ impl Proven {
         for (pixel, (&kind, &certificate)) in kinds.iter().zip(certificates).enumerate() {
             let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
             let ray = scene.camera.ray(scene.size, x, y);
-            let truth = judge.reference(ray);
-            let hits = truth.kind != Kind::Nothing;
+            let reference = judge.reference(ray);
+            let hits = reference.kind != Kind::Nothing;
             let says = [Some(false), Some(true), None][certificate as usize];
             self.rays += 1;
             self.differing += usize::from(hits != (kind != Kind::Nothing as u32));
             self.proven += usize::from(says.is_some());
             let is_wrong = says.is_some_and(|says| says != hits);
-            self.wrong += usize::from(is_wrong && judge.is_certain(ray, truth));
+            self.wrong += usize::from(is_wrong && judge.is_certain(ray, reference));
         }
     }
 }

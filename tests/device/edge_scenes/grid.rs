@@ -189,7 +189,7 @@ fn nearest_voxels_along_the_grid() {
     let Some(device) = common::device() else {
         return;
     };
-    // Off the walls between voxels, where a tie is anyone's.
+    // Off the faces between voxels, where a tie may go either way.
     let volume = noise();
     let trial = Trial {
         device: &device,
@@ -208,8 +208,8 @@ fn nearest_voxels_along_the_grid() {
         let mut scene = trial.scene(picture(Mode::Mip, &volume), camera, size(16, 16));
         scene.sampling.filter = Filter::Nearest;
         let frame = &on_device(&device, &volume, std::slice::from_ref(&scene))[0];
-        let truth = on_reference(&volume, &scene);
-        let expected = truth.plane(VALUE).unwrap();
+        let reference = on_reference(&volume, &scene);
+        let expected = reference.plane(VALUE).unwrap();
         assert_eq!(frame.plane(VALUE).unwrap(), expected, "{toward_eye}");
         assert_ne!(moved_by_a_pixel(frame).plane(VALUE).unwrap(), expected);
     }

@@ -105,24 +105,24 @@ impl Trial<'_> {
         scene
     }
 
-    /// Renders every mode both ways; gives the figures above their limits.
+    /// Renders every mode with both; gives the figures above their limits.
     fn failures(&self, cameras: &[(String, Camera, ImageSize)]) -> Vec<String> {
-        let mut told = Vec::new();
+        let mut rows = Vec::new();
         let mut scenes = Vec::new();
         for (from, camera, size) in cameras {
             for (mode, limits) in LIMITS {
-                told.push((format!("{} from {from}: {mode:?}", self.name), *limits));
+                rows.push((format!("{} from {from}: {mode:?}", self.name), *limits));
                 scenes.push(self.scene(picture(*mode, self.volume), *camera, *size));
             }
         }
         let frames = on_device(self.device, self.volume, &scenes);
         let mut wrong = Vec::new();
-        for (((what, limits), scene), frame) in told.iter().zip(&scenes).zip(&frames) {
-            let truth = on_reference(self.volume, scene);
+        for (((what, limits), scene), frame) in rows.iter().zip(&scenes).zip(&frames) {
+            let reference = on_reference(self.volume, scene);
             assert_sound(what, frame);
-            assert_sound(what, &truth);
+            assert_sound(what, &reference);
             for &(figure, limit) in *limits {
-                let measured = figure.of(&truth, frame, self.volume);
+                let measured = figure.of(&reference, frame, self.volume);
                 if measured > limit {
                     wrong.push(format!("{what}: {figure:?} {measured:.3e} > {limit}"));
                 }
@@ -149,9 +149,9 @@ fn the_limits_see_a_pixel() {
     let scenes: Vec<Scene> = LIMITS.iter().map(scene).collect();
     let frames = on_device(&device, &volume, &scenes);
     for (((mode, limits), scene), frame) in LIMITS.iter().zip(&scenes).zip(&frames) {
-        let truth = on_reference(&volume, scene);
+        let reference = on_reference(&volume, scene);
         for &(figure, limit) in *limits {
-            let control = figure.of(&truth, &moved_by_a_pixel(frame), &volume);
+            let control = figure.of(&reference, &moved_by_a_pixel(frame), &volume);
             assert!(control > limit, "{mode:?}: {figure:?} {control}");
         }
     }

@@ -104,13 +104,13 @@ fn compare(
     let others = on_device(device, found, &founds);
     let mut wrong = Vec::new();
     for (i, (frame, other)) in frames.iter().zip(&others).enumerate() {
-        let truths = [
+        let references = [
             on_reference(right, &rights[i]),
             on_reference(found, &founds[i]),
         ];
         for (by, difference) in [
             ("device", difference(frame, other)),
-            ("reference", difference(&truths[0], &truths[1])),
+            ("reference", difference(&references[0], &references[1])),
         ] {
             wrong.extend(difference.map(|d| format!("{name}, scene {i}, {by}: {d}")));
         }

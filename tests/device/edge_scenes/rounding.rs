@@ -95,7 +95,7 @@ fn rounding_changes_no_answer_of_the_reference() {
     let volume = extremes();
     let other = plain(&volume);
     let range = volume.range();
-    let mut met = 0;
+    let mut hit_count = 0;
     for (iso, like) in [
         (range.min, 0.0),
         (range.min.next_up(), f64::MIN_POSITIVE),
@@ -120,11 +120,11 @@ fn rounding_changes_no_answer_of_the_reference() {
                     let near = found == right || (found - right).abs() < 1e-5;
                     assert!(near, "{iso:e}: {found} {right}");
                 }
-                met += hits(&found);
+                hit_count += hits(&found);
             }
         }
     }
-    assert!(met > 5000, "{met}");
+    assert!(hit_count > 5000, "{hit_count}");
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn projections_stay_within_the_voxels_range() {
     }
 }
 
-/// The least value on a ray through voxels of the smaller value alone is that value, not what rounding
+/// The smallest value on a ray through voxels of the smaller value alone is that value, not what rounding
 /// leaves of the greater.
 #[test]
 fn a_minimum_on_a_face_of_small_values_is_small() {

@@ -88,17 +88,17 @@ fn iso_values_of_any_kind() {
     let only: Vec<Scene> = scenes.iter().map(|s| s.2.clone()).collect();
     let mut wrong = Vec::new();
     for ((iso, caps, scene), frame) in scenes.iter().zip(on_device(&device, &volume, &only)) {
-        let truth = on_reference(&volume, scene);
+        let reference = on_reference(&volume, scene);
         assert_sound("iso", &frame);
-        let differ = differing_pixels(&truth, &frame);
-        let depth = DepthP99.of(&truth, &frame, &volume);
+        let differ = differing_pixels(&reference, &frame);
+        let depth = DepthP99.of(&reference, &frame, &volume);
         if differ > 0 || depth > 0.01 {
             wrong.push(format!(
                 "iso {iso} caps {caps} {:?}: {differ} pixels, depth {depth}",
                 scene.camera.lens()
             ));
         }
-        let hits = truth
+        let hits = reference
             .plane(KIND)
             .into_iter()
             .flatten()
@@ -111,7 +111,7 @@ fn iso_values_of_any_kind() {
             assert!(hits > 0, "iso {iso} caps {caps}");
         }
         if *iso == 60.0 {
-            assert!(differing_pixels(&truth, &moved_by_a_pixel(&frame)) > 0);
+            assert!(differing_pixels(&reference, &moved_by_a_pixel(&frame)) > 0);
         }
     }
     report(&wrong);
@@ -164,9 +164,9 @@ fn transfer_functions_of_any_kind() {
     let frames = on_device(&device, &volume, &scenes);
     let mut wrong = Vec::new();
     for (((name, _, _, limit), scene), frame) in cases.iter().zip(&scenes).zip(&frames) {
-        let truth = on_reference(&volume, scene);
+        let reference = on_reference(&volume, scene);
         assert_sound(name, frame);
-        let measured = AlphaMax.of(&truth, frame, &volume);
+        let measured = AlphaMax.of(&reference, frame, &volume);
         println!("{name}: {measured:.2e}");
         if measured > *limit {
             wrong.push(format!("{name}: {measured:.3e} > {limit}"));
@@ -174,7 +174,7 @@ fn transfer_functions_of_any_kind() {
         // Where there is something to see, a pixel's move is seen.
         if *limit > 0.0 {
             assert!(
-                AlphaMax.of(&truth, &moved_by_a_pixel(frame), &volume) > *limit,
+                AlphaMax.of(&reference, &moved_by_a_pixel(frame), &volume) > *limit,
                 "{name}"
             );
         }

@@ -1,5 +1,5 @@
 //! The adaptive rule keeps its bound: against the double-precision reference, under transfer
-//! functions that are steep, spiked, stepped or next to opaque, on phantoms and on real volumes where
+//! functions that change abruptly, spiked, stepped or next to opaque, on phantoms and on real volumes where
 //! `ANGIORAY_DATA` names their folder. `cargo nextest run --test device --no-capture quadrature:: | grep '|'`
 //! prints how many pixels do.
 
@@ -16,8 +16,8 @@ use super::knot;
 use crate::common::{self, on_device, on_reference};
 
 const SIZE_PX: u32 = 64;
-/// The least share of pixels within the bound.
-const LEAST: f64 = 0.999;
+/// The minimum share of pixels within the bound.
+const MIN: f64 = 0.999;
 const BOUNDS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 const BLUE: [f64; 3] = [0.1, 0.2, 0.9];
@@ -36,7 +36,7 @@ fn hard() -> Vec<(&'static str, Points)> {
     vec![
         ("smooth", vec![(0.1, BLUE, 0.0), (0.9, WARM, 0.6)]),
         (
-            "steep",
+            "abrupt",
             vec![(0.3, BLUE, 0.0), (0.31, WARM, 0.7), (1.0, BLUE, 0.8)],
         ),
         (
@@ -58,17 +58,15 @@ fn transfer(points: &Points, volume: &Volume) -> TransferFunction {
 }
 
 /// The share of pixels of which no channel is off by more than `bound`, and the largest error.
-fn within(truth: &Frame, frame: &Frame, bound: f64) -> (f64, f64) {
-    let pixels = truth.color.iter().zip(&frame.color);
+fn within(reference: &Frame, frame: &Frame, bound: f64) -> (f64, f64) {
+    let pixels = reference.color.iter().zip(&frame.color);
     let error = |(a, b): (&[f32; 4], &[f32; 4])| {
-        (0..4).fold(0.0, |most, c| {
-            f64::max(most, f64::from((a[c] - b[c]).abs()))
-        })
+        (0..4).fold(0.0, |max, c| f64::max(max, f64::from((a[c] - b[c]).abs())))
     };
     let errors: Vec<f64> = pixels.map(error).collect();
-    let kept = errors.iter().filter(|&&e| e <= bound).count();
-    let most = errors.iter().fold(0.0, |most, &e| f64::max(most, e));
-    (kept as f64 / errors.len() as f64, most)
+    let within_bound = errors.iter().filter(|&&e| e <= bound).count();
+    let max = errors.iter().fold(0.0, |max, &e| f64::max(max, e));
+    (within_bound as f64 / errors.len() as f64, max)
 }
 
 fn scene(volume: &Volume, emission: Emission) -> Scene {
@@ -84,14 +82,14 @@ fn samples(frame: &Frame) -> u64 {
         .sum()
 }
 
-fn judge(name: &str, volume: &Volume, phong: Option<Phong>) {
+fn check(name: &str, volume: &Volume, phong: Option<Phong>) {
     let Some(device) = common::device() else {
         return;
     };
     let mut broken = 0;
     let mut wrong = Vec::new();
     for (shape, points) in hard() {
-        broken += usize::from(judge_one(
+        broken += usize::from(check_one(
             &device,
             name,
             volume,
@@ -105,7 +103,7 @@ fn judge(name: &str, volume: &Volume, phong: Option<Phong>) {
 }
 
 /// Every bound under one transfer function; whether fixed steps break that of 1e-3.
-fn judge_one(
+fn check_one(
     device: &Device,
     name: &str,
     volume: &Volume,
@@ -123,38 +121,38 @@ fn judge_one(
     });
     let mut scenes: Vec<Scene> = adaptive.map(|e| scene(volume, e)).to_vec();
     scenes.push(scene(volume, emission));
-    let truth = on_reference(volume, &scenes[0]);
+    let reference = on_reference(volume, &scenes[0]);
     let frames = on_device(device, volume, &scenes);
     let (fixed, adaptive) = frames.split_last().unwrap();
     let mut row = format!("| {name} | {shape} |");
     for (frame, bound) in adaptive.iter().zip(BOUNDS) {
-        let (share, most) = within(&truth, frame, bound);
+        let (share, max) = within(&reference, frame, bound);
         row.push_str(&format!(
-            " {:.2} % {most:.0e} {} |",
+            " {:.2} % {max:.0e} {} |",
             100.0 * share,
             samples(frame)
         ));
-        if share < LEAST {
+        if share < MIN {
             wrong.push(format!(
-                "{name} {shape} {bound}: {share} of the pixels, {most}"
+                "{name} {shape} {bound}: {share} of the pixels, {max}"
             ));
         }
     }
-    let (share, most) = within(&truth, fixed, 1e-3);
+    let (share, max) = within(&reference, fixed, 1e-3);
     println!(
-        "{row} {:.2} % {most:.0e} {} |",
+        "{row} {:.2} % {max:.0e} {} |",
         100.0 * share,
         samples(fixed)
     );
-    share < LEAST
+    share < MIN
 }
 
-fn judge_phantom(kind: PhantomKind, size: u64) {
+fn check_phantom(kind: PhantomKind, size: u64) {
     let spec = PhantomSpec::new(kind, Dims::new([size; 3]).unwrap());
-    judge(kind.name(), &phantom(&spec).unwrap().volume, None);
+    check(kind.name(), &phantom(&spec).unwrap().volume, None);
 }
 
-fn judge_real(name: &str, file: &str) {
+fn check_real(name: &str, file: &str) {
     let Some(folder) = std::env::var_os("ANGIORAY_DATA").map(PathBuf::from) else {
         eprintln!("skipped: ANGIORAY_DATA does not name a folder of real volumes");
         return;
@@ -169,47 +167,47 @@ fn judge_real(name: &str, file: &str) {
         options.raw.size = Some("256x256x256".parse().unwrap());
         options.raw.element = Some("u8".parse().unwrap());
     }
-    judge(name, &read(&path, &options, &Silent).unwrap(), None);
+    check(name, &read(&path, &options, &Silent).unwrap(), None);
 }
 
 #[test]
 fn bound_on_noise() {
-    judge_phantom(PhantomKind::Noise, 24);
+    check_phantom(PhantomKind::Noise, 24);
 }
 
 #[test]
 fn bound_on_vessels() {
-    judge_phantom(PhantomKind::Vessels, 64);
+    check_phantom(PhantomKind::Vessels, 64);
 }
 
 #[test]
 fn bound_on_a_gaussian() {
-    judge_phantom(PhantomKind::Blob, 40);
+    check_phantom(PhantomKind::Blob, 40);
 }
 
 #[test]
 fn bound_on_marschner_lobb() {
-    judge_phantom(PhantomKind::MarschnerLobb, 41);
+    check_phantom(PhantomKind::MarschnerLobb, 41);
 }
 
 #[test]
 fn bound_with_shading() {
     let spec = PhantomSpec::new(PhantomKind::Vessels, Dims::new([48; 3]).unwrap());
     let volume = phantom(&spec).unwrap().volume;
-    judge("vessels, phong", &volume, Some(Phong::default()));
+    check("vessels, phong", &volume, Some(Phong::default()));
 }
 
 #[test]
 fn bound_on_a_real_aneurism() {
-    judge_real("aneurism", "aneurism_toxi/aneurism.raw.gz");
+    check_real("aneurism", "aneurism_toxi/aneurism.raw.gz");
 }
 
 #[test]
 fn bound_on_real_ct_avm() {
-    judge_real("CT_AVM", "niivue_CT_AVM/CT_AVM.nii.gz");
+    check_real("CT_AVM", "niivue_CT_AVM/CT_AVM.nii.gz");
 }
 
 #[test]
 fn bound_on_real_chris_mra() {
-    judge_real("chris_MRA", "niivue_chris_MRA/chris_MRA.nii.gz");
+    check_real("chris_MRA", "niivue_chris_MRA/chris_MRA.nii.gz");
 }

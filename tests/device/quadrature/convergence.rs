@@ -53,15 +53,15 @@ fn a_homogeneous_medium_is_exact_at_any_step() {
     };
     let mut scene = Smooth::homogeneous().unwrap();
     let steps = [3.0, 1.0, 0.37];
-    let most = |scene: &Smooth, method| {
+    let max = |scene: &Smooth, method| {
         let Errors { color, opacity } = errors(&device, scene, method, &steps).unwrap();
         color.into_iter().chain(opacity).fold(0.0, f64::max)
     };
     for (method, _) in ORDERS {
-        let error = most(&scene, method);
+        let error = max(&scene, method);
         assert!(error < 1e-6, "{method}: {error}");
     }
     // The control: a thousandth denser.
     scene.reference[3] *= 1.001;
-    assert!(most(&scene, QuadratureMethod::Simpson) > 1e-6);
+    assert!(max(&scene, QuadratureMethod::Simpson) > 1e-6);
 }

@@ -34,7 +34,7 @@ fn band(value: f64) -> TransferFunction {
     TransferFunction::new(knots.to_vec(), 1.0).unwrap()
 }
 
-/// Every rule, and with every one that allows it every way of taking leaves for one value.
+/// Every rule, and with every one that allows it every method of taking leaves for one value.
 fn rules() -> Vec<(Quadrature, Option<Homogeneity>)> {
     let mut rules = Vec::new();
     for method in QuadratureMethod::ALL {
@@ -75,8 +75,8 @@ fn emission(value: f64, (quadrature, homogeneity): (Quadrature, Option<Homogenei
     })
 }
 
-fn most_opaque(frame: &Frame) -> f32 {
-    frame.color.iter().fold(0.0, |most, c| f32::max(most, c[3]))
+fn max_alpha(frame: &Frame) -> f32 {
+    frame.color.iter().fold(0.0, |max, c| f32::max(max, c[3]))
 }
 
 /// The volumes, and for each the value between its two labels.
@@ -98,7 +98,7 @@ fn no_rule_shows_a_label_between_two_with_the_nearest_filter() {
                 Filter::Nearest => Wanted::NONE,
                 Filter::Linear => Wanted::ALL,
             };
-            most_opaque(&renderer.render(&scene, wanted).unwrap().frame)
+            max_alpha(&renderer.render(&scene, wanted).unwrap().frame)
         };
         for rule in rules() {
             assert_eq!(opacity(Filter::Nearest, between, rule), 0.0, "{rule:?}");
@@ -109,16 +109,16 @@ fn no_rule_shows_a_label_between_two_with_the_nearest_filter() {
                 "{rule:?}"
             );
         }
-        let truth = |filter, value| {
+        let reference = |filter, value| {
             let rule = (Quadrature::default(), None);
-            most_opaque(&on_reference(
+            max_alpha(&on_reference(
                 &volume,
                 &scene(&volume, filter, emission(value, rule)),
             ))
         };
-        assert_eq!(truth(Filter::Nearest, between), 0.0);
-        assert!(truth(Filter::Linear, between) > 0.3);
-        assert!(truth(Filter::Nearest, between + 1.0) > 0.9);
+        assert_eq!(reference(Filter::Nearest, between), 0.0);
+        assert!(reference(Filter::Linear, between) > 0.3);
+        assert!(reference(Filter::Nearest, between + 1.0) > 0.9);
     }
 }
 

@@ -71,8 +71,8 @@ fn along_x(
         .into_iter()
         .zip(frames.iter().map(FirstPixel::of))
         .collect();
-    let truth = FirstPixel::of(&on_reference(volume, &scenes[0]));
-    all.push(("reference".to_owned(), truth));
+    let reference = FirstPixel::of(&on_reference(volume, &scenes[0]));
+    all.push(("reference".to_owned(), reference));
     all
 }
 
@@ -163,7 +163,7 @@ fn two_thin_sheets_have_the_mean_of_their_places() {
             _ => missed += usize::from(off.is_nan() || off >= 0.01),
         }
     }
-    // The control: rules that look at points alone pass by a sheet, or take one for thicker than it is.
+    // The control: rules that sample points alone miss a sheet, or take one for thicker than it is.
     assert!(missed >= 4 || common::device().is_none(), "{missed}");
 }
 
@@ -281,8 +281,8 @@ fn wanting_layers_changes_no_bit_of_the_colours_and_no_sample() {
         }
     }
     let scene = &emissions(&volume)[0];
-    let truth = on_reference(&volume, scene);
+    let reference = on_reference(&volume, scene);
     let bare =
         angioray::reference::render(&volume, scene, Wanted::NONE, &angioray::progress::Silent);
-    assert!(bare.unwrap().color == truth.color);
+    assert!(bare.unwrap().color == reference.color);
 }

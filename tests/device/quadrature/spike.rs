@@ -36,10 +36,10 @@ fn preintegration_keeps_a_spike_between_two_samples_and_other_rules_lose_it() {
             };
             let mut scene = through(&volume, DVec3::splat(4.2), DVec3::X, emission);
             scene.sampling.step = StepVoxels::new(1.0).unwrap();
-            let truth = on_reference(&volume, &scene).color[0].map(f64::from);
-            assert!(truth[3] > 0.5, "{truth:?}");
+            let reference = on_reference(&volume, &scene).color[0].map(f64::from);
+            assert!(reference[3] > 0.5, "{reference:?}");
             let seen = colors(&device, &volume, &[scene])[0];
-            let error = apart(seen, truth);
+            let error = apart(seen, reference);
             // A spike of 1e-5 has its knots in the last digits of single precision.
             let limit = if width < 1e-4 { 0.05 } else { 2e-3 };
             let keeps = matches!(

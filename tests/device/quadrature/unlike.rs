@@ -69,14 +69,14 @@ fn quadrature(scene: &Scene) -> Quadrature {
 fn measured(volume: &Volume, scene: &Scene) -> Option<(f64, f64)> {
     let device = common::device()?;
     let frame = &on_device(&device, volume, std::slice::from_ref(scene))[0];
-    let truth = on_reference(volume, scene);
-    assert!(truth.color.iter().any(|c| c[3] > 0.5), "nothing to see");
-    let pairs = truth
+    let reference = on_reference(volume, scene);
+    assert!(reference.color.iter().any(|c| c[3] > 0.5), "nothing to see");
+    let pairs = reference
         .color
         .iter()
         .flatten()
         .zip(frame.color.iter().flatten());
-    let error = pairs.fold(0.0, |most, (a, b)| f64::max(most, f64::from((a - b).abs())));
+    let error = pairs.fold(0.0, |max, (a, b)| f64::max(max, f64::from((a - b).abs())));
     let samples: u64 = frame
         .plane(STEPS)
         .into_iter()
@@ -100,7 +100,7 @@ fn cases() -> Vec<(&'static str, Volume, DVec3, f64)> {
 
 /// More samples than a ray with this bound needs in any of the cases; fixed steps take ten times as many at
 /// least.
-const MOST_SAMPLES: f64 = 1500.0;
+const MAX_SAMPLES: f64 = 1500.0;
 
 #[test]
 fn the_default_keeps_its_bound_at_a_cost_that_does_not_grow_with_the_ratio() {
@@ -120,13 +120,13 @@ fn the_default_keeps_its_bound_at_a_cost_that_does_not_grow_with_the_ratio() {
         println!("| {name} | {samples:.0} | {error:.1e} |");
         if unlike {
             assert!(error <= adaptive.bound(), "{name}: {error}");
-            assert!(samples < MOST_SAMPLES, "{name}: {samples}");
+            assert!(samples < MAX_SAMPLES, "{name}: {samples}");
         }
     }
 }
 
 #[test]
-fn steps_that_are_asked_for_are_taken_and_what_they_cost_is_reported() {
+fn requested_steps_are_taken_and_their_cost_is_reported() {
     let (_, volume, toward, height_mm) = cases().swap_remove(1);
     for more in [
         "quad = 'simpson'",
@@ -137,12 +137,12 @@ fn steps_that_are_asked_for_are_taken_and_what_they_cost_is_reported() {
     ] {
         let (scene, notes) = scene(&volume, toward, height_mm, more);
         assert!(quadrature(&scene).is_stepped(), "{more}");
-        let told: Vec<_> = notes
+        let reported: Vec<_> = notes
             .iter()
             .filter(|n| n.contains("samples per ray"))
             .collect();
         assert!(
-            told.len() == 1 && told[0].contains("in all: --quad adaptive"),
+            reported.len() == 1 && reported[0].contains("in all: --quad adaptive"),
             "{more}: {notes:?}"
         );
     }
@@ -156,7 +156,7 @@ fn steps_that_are_asked_for_are_taken_and_what_they_cost_is_reported() {
     assert!(!notes.iter().any(|n| n.contains("per ray")), "{notes:?}");
     let (stepped, _) = scene(&volume, toward, height_mm, "step = 2");
     if let Some((samples, _)) = measured(&volume, &stepped) {
-        assert!(samples > 3.0 * MOST_SAMPLES, "{samples}");
+        assert!(samples > 3.0 * MAX_SAMPLES, "{samples}");
     }
 }
 
@@ -169,11 +169,11 @@ fn ratios_beyond_any_step_have_a_picture() {
         return;
     };
     let frame = &on_device(&device, &volume, std::slice::from_ref(&scene))[0];
-    let truth = on_reference(&volume, &scene);
-    let pairs = truth
+    let reference = on_reference(&volume, &scene);
+    let pairs = reference
         .color
         .iter()
         .flatten()
         .zip(frame.color.iter().flatten());
-    assert!(pairs.fold(0.0, |most, (a, b)| f32::max(most, (a - b).abs())) < 1e-3);
+    assert!(pairs.fold(0.0, |max, (a, b)| f32::max(max, (a - b).abs())) < 1e-3);
 }

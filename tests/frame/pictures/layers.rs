@@ -84,7 +84,7 @@ fn exr_holds_every_layer_exactly() {
     assert_eq!(read["depth.Z"][0], f32::INFINITY);
     assert_eq!(read["depth.Z"][13], 246.912);
     assert_eq!(read["nodes.N"][1], 16_777_215.0);
-    // Channels are told apart: this is no comparison of zeros.
+    // Channels are distinguished: zeros are not compared with zeros.
     assert_ne!(read["R"], read["G"]);
     assert_ne!(read["normal.X"], read["normal.Y"]);
 

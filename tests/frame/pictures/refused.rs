@@ -83,7 +83,7 @@ fn a_frame_without_the_plane_is_a_sentence() {
                 let said = outcome.unwrap_err().to_string();
                 assert!(said.contains(layer.name()), "{said}");
             }
-            // What is asked for by the encoding is enough.
+            // What the encoding needs is enough.
             let wanted = Wanted::for_encoding(&encoding, false);
             write(&path, &nothing_hit(size, wanted), &encoding, &[]).unwrap();
             fs::remove_file(&path).unwrap();

@@ -3,7 +3,7 @@
 use angioray::gpu::Args;
 use angioray::scene::{ClipPlane, Filter};
 
-use super::interval::{Case, Inside, random_cases, truth};
+use super::interval::{Case, Inside, expected, random_cases};
 use super::{Random, U8, build, common, dot, room, run, upload, variant, xyz};
 
 /// What `axis` is where a ray enters through plane 0.
@@ -65,7 +65,7 @@ fn on_device(cases: &[(Case, Vec<Plane>)]) -> Option<Vec<Inside>> {
 /// may be off for what single precision makes of the planes; a plane along the ray makes it infinite
 /// where the ray lies in it but for rounding.
 fn clipped(case: &Case, planes: &[Plane]) -> (Inside, f64) {
-    let mut found = truth(case, 0.0);
+    let mut found = expected(case, 0.0);
     let mut error = 2e-6 * (1.0 + found.enter.abs());
     let (origin, dir) = (case.origin.map(f64::from), case.dir.map(f64::from));
     for (i, &plane) in planes.iter().enumerate() {
@@ -95,19 +95,19 @@ fn clipped(case: &Case, planes: &[Plane]) -> (Inside, f64) {
     (found, error)
 }
 
-/// Whether the device's interval is the truth to rounding. A ray that grazes may miss or not.
+/// Whether the device's interval is as expected but for rounding. A ray that grazes may miss or not.
 fn agrees(case: &Case, planes: &[Plane], got: Inside) -> bool {
-    let (truth, error) = clipped(case, planes);
-    if (truth.exit - truth.enter).abs() <= 2.0 * error || error > 1e-2 {
+    let (expected, error) = clipped(case, planes);
+    if (expected.exit - expected.enter).abs() <= 2.0 * error || error > 1e-2 {
         return true;
     }
-    if truth.enter > truth.exit {
+    if expected.enter > expected.exit {
         return got.enter > got.exit;
     }
-    (got.enter - truth.enter).abs() <= error
-        && (got.exit - truth.exit).abs() <= error
-        && got.by_face == truth.by_face
-        && (got.axis == truth.axis || truth.enter <= 2.0 * error)
+    (got.enter - expected.enter).abs() <= error
+        && (got.exit - expected.exit).abs() <= error
+        && got.by_face == expected.by_face
+        && (got.axis == expected.axis || expected.enter <= 2.0 * error)
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn random_planes_cut_where_their_equations_say() {
                 let [x, y, z, _] = random.direction();
                 let normal = [x, y, z].map(f64::from);
                 let center = case.size.map(|n| f64::from(n - 1) / 2.0);
-                let radius = center.iter().fold(0.5, |most: f64, c| most.max(*c));
+                let radius = center.iter().fold(0.5, |max: f64, c| max.max(*c));
                 let beyond = f64::from(random.within(-0.2, 1.2)) * radius;
                 [x, y, z, (beyond - dot(normal, center)) as f32]
             };
@@ -133,15 +133,15 @@ fn random_planes_cut_where_their_equations_say() {
         return;
     };
     for ((case, planes), &got) in cases.iter().zip(&got) {
-        let truth = clipped(case, planes);
+        let expected = clipped(case, planes);
         assert!(
             agrees(case, planes, got),
-            "{case:?} {planes:?}: {got:?}, not {truth:?}"
+            "{case:?} {planes:?}: {got:?}, not {expected:?}"
         );
     }
-    let met = |i: &&Inside| i.enter <= i.exit;
-    let by_plane = got.iter().filter(met).filter(|i| i.axis >= FIRST_AXIS);
-    let (by_plane, hits) = (by_plane.count(), got.iter().filter(met).count());
+    let is_hit = |i: &&Inside| i.enter <= i.exit;
+    let by_plane = got.iter().filter(is_hit).filter(|i| i.axis >= FIRST_AXIS);
+    let (by_plane, hits) = (by_plane.count(), got.iter().filter(is_hit).count());
     assert!(by_plane > 500 && hits > 5_000, "{by_plane} of {hits}");
     // Planes a thousandth of a voxel aside, and a missing last one, are seen.
     let wrong = |planes: fn(&[Plane]) -> Vec<Plane>| {
@@ -234,9 +234,9 @@ fn rays_along_and_in_planes_are_exact() {
         return;
     };
     let mut others = 0;
-    for ((case, planes, truth), got) in table.iter().zip(&got) {
-        match truth {
-            Some(truth) => assert_eq!(got, truth, "{case:?} {planes:?}"),
+    for ((case, planes, expected), got) in table.iter().zip(&got) {
+        match expected {
+            Some(expected) => assert_eq!(got, expected, "{case:?} {planes:?}"),
             None => assert!(got.enter > got.exit, "{case:?} {planes:?}: {got:?}"),
         }
         others += usize::from(*got != whole && *got != free(8.0));

@@ -44,11 +44,11 @@ fn encoded(v: f64) -> f64 {
     }
 }
 
-/// The largest difference, relative to the truth or to 0.01 where that is smaller.
-fn worst(values: &[f32], got: &[f32], truth: impl Fn(f64) -> f64) -> f64 {
+/// The largest difference, relative to the expected value or to 0.01 where that is smaller.
+fn worst(values: &[f32], got: &[f32], expected: impl Fn(f64) -> f64) -> f64 {
     let error = |(&v, &got): (&f32, &f32)| {
-        let truth = truth(f64::from(v));
-        (f64::from(got) - truth).abs() / truth.abs().max(0.01)
+        let expected = expected(f64::from(v));
+        (f64::from(got) - expected).abs() / expected.abs().max(0.01)
     };
     values.iter().zip(got).map(error).fold(0.0, f64::max)
 }

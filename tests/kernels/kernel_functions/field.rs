@@ -196,7 +196,7 @@ fn nearest_takes_the_nearest_voxel_and_has_no_slope() {
     let variant = variant(VoxelType::U16, Filter::Nearest, 8);
     for size in SIZES {
         let mut next = 0u16;
-        // Each voxel its own value: the value tells the voxel.
+        // Each voxel its own value: the value identifies the voxel.
         let grid = Grid::new(size, || {
             next += 1;
             next - 1
@@ -223,7 +223,7 @@ fn nearest_takes_the_nearest_voxel_and_has_no_slope() {
 }
 
 #[test]
-fn the_twin_is_linear_along_edges() {
+fn the_counterpart_is_linear_along_edges() {
     let grid = Grid::<u8>::new([2, 2, 2], {
         let mut voxels = [0, 10, 20, 30, 40, 50, 60, 70].into_iter();
         move || voxels.next().unwrap()

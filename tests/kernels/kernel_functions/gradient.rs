@@ -141,11 +141,11 @@ fn differences_are_as_defined_up_to_the_border() {
             };
             let mut others = 0;
             for (i, &p) in points.iter().enumerate() {
-                let truth = difference(method, size, &voxels, xyz(p));
-                let error = apart(seen.gradients[i], truth);
+                let expected = difference(method, size, &voxels, xyz(p));
+                let error = apart(seen.gradients[i], expected);
                 assert!(error < 3e-6, "{method} {size:?} at {p:?}: {error:e}");
-                if dot(truth, truth) > 1e-2 {
-                    let error = apart(seen.normals[i], normal(truth));
+                if dot(expected, expected) > 1e-2 {
+                    let error = apart(seen.normals[i], normal(expected));
                     assert!(error < 5e-5, "{method} {size:?} at {p:?}: {error:e}");
                 }
                 // The control: the other methods.
@@ -184,8 +184,8 @@ fn error_at(method: &str, h: f64) -> Option<f64> {
         .collect();
     let seen = on_device([N; 3], &Source::Voxels(method, &voxels), &points)?;
     let errors = centres.iter().zip(&seen.gradients);
-    Some(errors.fold(0.0, |most, (&p, &found)| {
-        f64::max(most, apart(found, smooth(h, p).1) / h)
+    Some(errors.fold(0.0, |max, (&p, &found)| {
+        f64::max(max, apart(found, smooth(h, p).1) / h)
     }))
 }
 
@@ -229,13 +229,13 @@ fn precomputed_directions_are_interpolated_between_their_voxels() {
         let mut caught = 0;
         for (i, &p) in points.iter().enumerate() {
             // In units of the grid; its last interval may be a shorter one.
-            let at = |stretch: bool| -> [f64; 3] {
+            let at = |stretched: bool| -> [f64; 3] {
                 std::array::from_fn(|a| {
                     let below = (grid[a].max(2) - 2) * voxels_apart;
                     let (p, below) = (f64::from(p[a]), f64::from(below));
                     let last = f64::from(size[a] - 1) - below;
                     let whole = f64::from(voxels_apart);
-                    if p <= below || last <= 0.0 || !stretch {
+                    if p <= below || last <= 0.0 || !stretched {
                         p / whole
                     } else {
                         below / whole + (p - below) / last
@@ -245,10 +245,10 @@ fn precomputed_directions_are_interpolated_between_their_voxels() {
             let of = |at: [f64; 3]| -> [f64; 3] {
                 std::array::from_fn(|c| interpolated(grid, at, |k| directions[3 * k + c].into()))
             };
-            let truth = of(at(true));
-            let error = apart(seen.gradients[i], truth);
+            let expected = of(at(true));
+            let error = apart(seen.gradients[i], expected);
             assert!(error < 0.05, "{size:?} at {p:?}: {error}");
-            if truth == [0.0; 3] {
+            if expected == [0.0; 3] {
                 assert_eq!(seen.normals[i], xyz(FALLBACK));
             }
             // The control: as if all intervals were whole, and half a voxel aside.

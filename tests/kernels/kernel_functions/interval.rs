@@ -66,7 +66,7 @@ fn on_device(cases: &[Case]) -> Option<Vec<Inside>> {
 
 /// The part of the ray with t ≥ 0 inside the box of voxel centres, half a voxel either side of a
 /// single one. `border` widens the box: 0 is right.
-pub fn truth(case: &Case, border: f64) -> Inside {
+pub fn expected(case: &Case, border: f64) -> Inside {
     let mut found = Inside {
         enter: 0.0,
         exit: f64::INFINITY,
@@ -98,27 +98,27 @@ pub fn truth(case: &Case, border: f64) -> Inside {
     found
 }
 
-/// Whether the device's interval is the truth to rounding. A ray that grazes may miss or not; a ray
+/// Whether the device's interval is as expected but for rounding. A ray that grazes may miss or not; a ray
 /// through an edge may enter by either face.
 fn agrees(case: &Case, got: Inside, border: f64) -> bool {
-    let truth = truth(case, border);
+    let expected = expected(case, border);
     let scale = 1.0
-        + truth.enter.abs().max(if truth.exit.is_finite() {
-            truth.exit.abs()
+        + expected.enter.abs().max(if expected.exit.is_finite() {
+            expected.exit.abs()
         } else {
             0.0
         });
     let near = 2e-6 * scale;
-    if (truth.exit - truth.enter).abs() <= near {
+    if (expected.exit - expected.enter).abs() <= near {
         return true;
     }
-    if truth.enter > truth.exit {
+    if expected.enter > expected.exit {
         return got.enter > got.exit;
     }
-    (got.enter - truth.enter).abs() <= near
-        && (got.exit - truth.exit).abs() <= near
+    (got.enter - expected.enter).abs() <= near
+        && (got.exit - expected.exit).abs() <= near
         && got.enter <= got.exit
-        && got.by_face == truth.by_face
+        && got.by_face == expected.by_face
 }
 
 pub fn random_cases(random: &mut Random) -> Vec<Case> {
@@ -150,7 +150,7 @@ fn random_rays_enter_and_leave_where_slabs_say() {
         assert!(
             agrees(case, got, 0.0),
             "{case:?}: {got:?}, not {:?}",
-            truth(case, 0.0)
+            expected(case, 0.0)
         );
     }
     let hits = got.iter().filter(|i| i.enter <= i.exit).count();
@@ -232,14 +232,17 @@ fn rays_in_faces_edges_and_corners_are_exact() {
         return;
     };
     for (case, got) in cases.iter().zip(&got) {
-        let truth = truth(case, 0.0);
-        let misses = truth.enter > truth.exit;
+        let expected = expected(case, 0.0);
+        let misses = expected.enter > expected.exit;
         assert_eq!(
             got.enter > got.exit,
             misses,
-            "{case:?}: {got:?}, not {truth:?}"
+            "{case:?}: {got:?}, not {expected:?}"
         );
-        assert!(misses || *got == truth, "{case:?}: {got:?}, not {truth:?}");
+        assert!(
+            misses || *got == expected,
+            "{case:?}: {got:?}, not {expected:?}"
+        );
     }
     let hits = got.iter().filter(|i| i.enter <= i.exit).count();
     assert!(
@@ -249,7 +252,7 @@ fn rays_in_faces_edges_and_corners_are_exact() {
     );
     // A box a little smaller, which loses what lies in faces, is seen.
     let lost = |(case, got): &(&Case, &Inside)| {
-        let smaller = truth(case, -1e-4);
+        let smaller = expected(case, -1e-4);
         (smaller.enter > smaller.exit) != (got.enter > got.exit)
     };
     assert!(cases.iter().zip(&got).any(|pair| lost(&pair)));

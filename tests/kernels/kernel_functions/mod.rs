@@ -1,4 +1,4 @@
-//! The kernels' functions on the device against twins in double precision, written from their
+//! The kernels' functions on the device against counterparts in double precision, written from their
 //! definitions.
 
 use crate::common;

@@ -37,7 +37,7 @@ impl Path {
     }
 
     /// Across one cell from corner to corner of its xy face: the field is `4 s (1 − s)` at the part
-    /// s of the way, 0 ≤ t ≤ 1.
+    /// s of the path, 0 ≤ t ≤ 1.
     fn parabola() -> Self {
         Self {
             size: [2, 2, 1],
@@ -148,7 +148,7 @@ fn nothing_above_the_goal_is_nothing_found() {
     }
 }
 
-/// Tangents of a parabola meet halfway: each probe halves the way to its top.
+/// Tangents of a parabola meet halfway: each probe halves the distance to its top.
 #[test]
 fn the_top_of_a_parabola_is_found_to_a_sixteenth_of_the_segment() {
     let path = Path::parabola();

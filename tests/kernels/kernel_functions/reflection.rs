@@ -76,9 +76,9 @@ impl Model {
     }
 }
 
-/// Phong 1975: the mirrored light against the eye. Blinn 1977: the half-way vector against the
-/// normal. `None`: too near where a side turns away to tell which side single precision sees.
-fn truth(points: &Points, i: usize, model: Model, two_sided: bool) -> Option<[f64; 3]> {
+/// Phong 1975: the mirrored light against the eye. Blinn 1977: the halfway vector against the
+/// normal. `None`: too near where a side turns away to know which side single precision sees.
+fn expected(points: &Points, i: usize, model: Model, two_sided: bool) -> Option<[f64; 3]> {
     let color = xyz(points.colors[i]);
     if model == Model::None {
         return Some(color);
@@ -106,8 +106,8 @@ fn truth(points: &Points, i: usize, model: Model, two_sided: bool) -> Option<[f6
         let mirrored: [f64; 3] = std::array::from_fn(|a| 2.0 * facing * n[a] - light[a]);
         dot(mirrored, eye)
     } else {
-        let half_way: [f64; 3] = std::array::from_fn(|a| light[a] + eye[a]);
-        dot(n, half_way) / dot(half_way, half_way).sqrt()
+        let halfway: [f64; 3] = std::array::from_fn(|a| light[a] + eye[a]);
+        dot(n, halfway) / dot(halfway, halfway).sqrt()
     };
     let shine = specular * lobe.max(0.0).powf(shininess);
     Some(color.map(|c| c * (ambient + diffuse * facing) + shine))
@@ -116,9 +116,9 @@ fn truth(points: &Points, i: usize, model: Model, two_sided: bool) -> Option<[f6
 fn worst(points: &Points, seen: &[[f32; 4]], model: Model, two_sided: bool) -> f64 {
     let mut worst = 0.0_f64;
     for (i, &seen) in seen.iter().enumerate() {
-        if let Some(truth) = truth(points, i, model, two_sided) {
-            for (seen, truth) in xyz(seen).iter().zip(truth) {
-                worst = worst.max((seen - truth).abs());
+        if let Some(expected) = expected(points, i, model, two_sided) {
+            for (seen, expected) in xyz(seen).iter().zip(expected) {
+                worst = worst.max((seen - expected).abs());
             }
         }
     }

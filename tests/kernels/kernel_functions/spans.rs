@@ -145,7 +145,7 @@ fn tiling_fault(walked: &Walked, leaf: u32, level: u32) -> Option<String> {
     (next != walked.cells.len()).then(|| format!("{next} of {} samples", walked.cells.len()))
 }
 
-/// What is wrong with a flag that two samples' leaves touch: flagged, the straight way between them
+/// What is wrong with a flag that two samples' leaves touch: flagged, the straight line between them
 /// stays in both leaves; not flagged, they differ by more than a step along one axis.
 fn touch_fault(walked: &Walked, leaf: u32) -> Option<String> {
     for span in walked.spans.iter().skip(1) {

@@ -70,11 +70,11 @@ fn on_device(knots: &Knots, values: &[f32]) -> Option<Vec<[f32; 4]>> {
     Some(colors.download(&device).unwrap())
 }
 
-fn worst(values: &[f32], got: &[[f32; 4]], truth: impl Fn(f32) -> [f64; 4]) -> f64 {
+fn worst(values: &[f32], got: &[[f32; 4]], expected: impl Fn(f32) -> [f64; 4]) -> f64 {
     let mut worst = 0.0_f64;
     for (&v, got) in values.iter().zip(got) {
-        for (got, truth) in got.iter().zip(truth(v)) {
-            worst = worst.max((f64::from(*got) - truth).abs());
+        for (got, expected) in got.iter().zip(expected(v)) {
+            worst = worst.max((f64::from(*got) - expected).abs());
         }
     }
     worst
@@ -138,7 +138,7 @@ fn absorption_keeps_the_digits_of_small_opacities() {
         .collect();
     opacities.extend([0.0, 0.5, 0.999, 0.999_999, 1.0f32.next_down(), 1.0]);
     let unit_length_mm = 2.5f32;
-    let most = -(-TransferFunction::MAX_OPACITY).ln_1p() as f32;
+    let max = -(-TransferFunction::MAX_OPACITY).ln_1p() as f32;
     let pass = build("absorption", variant(U8, Filter::Linear, 8));
     let mut per_mm = room::<f32>(&device, opacities.len());
     run(
@@ -147,27 +147,27 @@ fn absorption_keeps_the_digits_of_small_opacities() {
         Args::new()
             .value("count", &(opacities.len() as u32))
             .value("unit_length_mm", &unit_length_mm)
-            .value("max_absorption", &most)
+            .value("max_absorption", &max)
             .read("opacities", &upload(&device, &opacities))
             .write("per_mm", &mut per_mm),
         opacities.len(),
     );
     let per_mm = per_mm.download(&device).unwrap();
 
-    let truth = |opacity: f32| {
+    let expected = |opacity: f32| {
         let absorption = -(-f64::from(opacity)).ln_1p();
-        absorption.min(f64::from(most)) / f64::from(unit_length_mm)
+        absorption.min(f64::from(max)) / f64::from(unit_length_mm)
     };
     let worst = |got: &dyn Fn(usize) -> f32| {
         let error = |i: usize| {
-            let truth = truth(opacities[i]);
-            (f64::from(got(i)) - truth).abs() / truth.max(1e-30)
+            let expected = expected(opacities[i]);
+            (f64::from(got(i)) - expected).abs() / expected.max(1e-30)
         };
         (0..opacities.len()).map(error).fold(0.0, f64::max)
     };
     let error = worst(&|i| per_mm[i]);
     assert!(error < 1e-6, "{error}");
     // What the logarithm of 1 − opacity in single precision gives is refused.
-    let naive = |i: usize| (-(1.0 - opacities[i]).ln()).min(most) / unit_length_mm;
+    let naive = |i: usize| (-(1.0 - opacities[i]).ln()).min(max) / unit_length_mm;
     assert!(worst(&naive) > 1e-3);
 }

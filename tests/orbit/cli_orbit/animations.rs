@@ -49,8 +49,8 @@ fn animations_hold_the_frames_of_the_pictures() {
     for (k, shown) in decoded.iter().enumerate() {
         assert_eq!(shown.delay().numer_denom_ms(), (40, 1));
         let rgb = image::DynamicImage::from(shown.buffer().clone()).into_rgb8();
-        let (mean, most) = apart(&rgb.into_raw(), &frames[k]);
-        assert!(mean < 1.0 && most < 32, "{k}: {mean} {most}");
+        let (mean, max) = apart(&rgb.into_raw(), &frames[k]);
+        assert!(mean < 1.0 && max < 32, "{k}: {mean} {max}");
     }
 }
 

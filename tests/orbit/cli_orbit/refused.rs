@@ -42,7 +42,7 @@ fn orbits_that_make_no_sense_are_refused() {
         (
             "--frames 3 -o a.apng --shard 0/2",
             2,
-            "'--shard' does not go",
+            "'--shard' cannot be combined",
         ),
         ("--frames 3 -o a.apng --aov depth", 2, "--aov"),
         ("--frames 3 -o a.apng --bit-depth 16", 2, "--bit-depth 16"),
@@ -52,11 +52,15 @@ fn orbits_that_make_no_sense_are_refused() {
             2,
             "every shard would write",
         ),
-        ("--frames 3 -o %d.jpg --resume", 2, "'--resume' does not go"),
+        (
+            "--frames 3 -o %d.jpg --resume",
+            2,
+            "'--resume' cannot be used",
+        ),
         (
             "--frames 3 -o %d.webp --resume",
             2,
-            "'--resume' does not go",
+            "'--resume' cannot be used",
         ),
         ("--frames 3 -o %d.png --scene 1.png", 2, "this file is read"),
         (

@@ -19,8 +19,8 @@ fn resuming_makes_what_is_missing_torn_or_of_another_scene() {
         place.done(&line(&whole, 70));
         place.done(&line(&part, 70));
         let path = |k: u32| place.path(&format!("{part}/{k:02}.{extension}"));
-        let kept = |k: u32| fs::metadata(path(k)).unwrap().modified().unwrap();
-        let before: Vec<_> = [0, 4, 7].map(kept).into();
+        let modified = |k: u32| fs::metadata(path(k)).unwrap().modified().unwrap();
+        let before: Vec<_> = [0, 4, 7].map(modified).into();
         // Missing; without its end; with a byte of its picture changed; empty; another scene's.
         fs::remove_file(path(1)).unwrap();
         let bytes = fs::read(path(2)).unwrap();
@@ -43,7 +43,7 @@ fn resuming_makes_what_is_missing_torn_or_of_another_scene() {
         assert!(output.status.success(), "{said}");
         assert!(said.contains(": 5 frames, 3 existed"), "{said}");
         assert_eq!(contents(&place, &part), contents(&place, &whole));
-        assert_eq!(before, [0, 4, 7].map(kept));
+        assert_eq!(before, [0, 4, 7].map(modified));
         // Nothing is left to do; of another scene, or coded otherwise, all is.
         let said = stderr(&place.run(&format!("{} --resume", line(&part, 70))));
         assert!(said.contains("nothing to do, 8 existed"), "{said}");

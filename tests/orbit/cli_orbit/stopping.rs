@@ -29,7 +29,7 @@ fn wait_for(place: &Place, folder: &str, satisfied: impl Fn(&[String]) -> bool) 
 }
 
 #[test]
-fn a_stopped_orbit_leaves_whole_frames_and_is_gone_on_with() {
+fn a_stopped_orbit_leaves_whole_frames_and_is_resumed() {
     let place = place();
     let line = |folder: &str| {
         format!("orbit v.nrrd --iso 70 --size 48 --frames 60 -o {folder}/%02d.png {REFERENCE}")
@@ -112,7 +112,7 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
 }
 
 #[test]
-fn frames_of_an_animation_that_are_all_kept_are_joined_and_others_are_made_anew() {
+fn finished_frames_of_an_animation_are_joined_and_others_are_made_anew() {
     let place = place();
     let line = |zoom: u32| {
         format!("orbit v.nrrd --iso 70 --size 16 --frames 4 --zoom {zoom} -o a.gif {REFERENCE}")
@@ -171,7 +171,7 @@ fn a_stopped_orbit_tells_what_it_made() {
 }
 
 #[test]
-fn an_orbit_under_an_error_bound_is_gone_on_with_by_the_flags_that_were_chosen() {
+fn an_orbit_under_an_error_bound_is_resumed_with_the_flags_that_were_chosen() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -225,7 +225,7 @@ fn a_second_signal_ends_it_at_once_with_the_same_status() {
         let lines: Vec<&str> = said.lines().collect();
         assert_eq!(lines.len(), 2, "{output}: {said}");
         assert!(
-            lines[0].starts_with("note: stopping after the frame in work"),
+            lines[0].starts_with("note: stopping after the current frame"),
             "{said}"
         );
         assert!(lines[1].starts_with("error: stopped at once"), "{said}");

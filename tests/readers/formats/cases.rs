@@ -87,7 +87,7 @@ fn negative_spacings_turn_their_axis_round() {
     let turned = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
     assert!(is_the_ball(&volume));
     assert!(lies_at(&volume, ORIGIN, turned, SPACING));
-    // The control: the judge sees the turn.
+    // The control: the comparison sees the turn.
     assert!(!lies_at(&volume, ORIGIN, DMat3::IDENTITY, SPACING));
     let header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1 1\nspacings: -0.7 0.8 -1.5\nencoding: raw\n\n\x01\x02";
     let volume = written("a.nrrd", header.as_bytes()).unwrap();

@@ -78,7 +78,7 @@ impl Expected {
         }
     }
 
-    /// The first difference: the judge of all tests here.
+    /// The first difference, by which all tests here decide.
     fn difference(&self, volume: &Volume) -> Option<String> {
         let dims = volume.dims().array();
         if dims != self.dims {
@@ -140,7 +140,7 @@ const TYPES: [(&str, VoxelType, f64); 10] = [
 ];
 
 #[test]
-fn the_judge_sees_every_kind_of_difference() {
+fn the_comparison_sees_every_kind_of_difference() {
     let volume = read_fixture("sitk_oblique.nrrd", &ReadOptions::default());
     let right = Expected::placed(oblique());
     assert_eq!(right.difference(&volume), None);

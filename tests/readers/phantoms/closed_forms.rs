@@ -42,7 +42,7 @@ fn rounding(voxel_type: VoxelType) -> f64 {
     }
 }
 
-/// Every voxel type, in an anisotropic volume: `closed(size)` must hold with the size asked for,
+/// Every voxel type, in an anisotropic volume: `closed(size)` must hold with the requested size,
 /// and not with 1.1 times that.
 fn holds(
     kind: PhantomKind,

@@ -100,7 +100,7 @@ proptest! {
                 spec.seed = seed;
                 spec.noise = if kind == PhantomKind::Noise { 0.0 } else { noise };
                 let made = phantom(&spec).unwrap();
-                prop_assert!(!made.truth.is_empty());
+                prop_assert!(!made.definition.is_empty());
                 prop_assert_eq!(made.tree.is_some(), kind == PhantomKind::Vessels);
                 let centre = DVec3::from_array(dims.map(|n| (n - 1) as f64 / 2.0));
                 let world = made.volume.geometry().world_from_index().transform_point3(centre);

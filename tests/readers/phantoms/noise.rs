@@ -12,7 +12,7 @@ fn fractions(spec: &PhantomSpec) -> Vec<f64> {
 }
 
 /// Mean, variance, and correlation with the neighbour `lag` voxels on.
-fn moments(values: &[f64], lag: usize) -> [f64; 3] {
+fn statistics(values: &[f64], lag: usize) -> [f64; 3] {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
@@ -34,7 +34,7 @@ fn noise_is_white_uniform_and_decided_by_its_seed() {
         // Five standard deviations of each estimate over 98,304 voxels.
         let is_white = |values: &[f64]| {
             [1, 64, 64 * 64].into_iter().all(|lag| {
-                let [mean, variance, correlation] = moments(values, lag);
+                let [mean, variance, correlation] = statistics(values, lag);
                 (mean - 0.5).abs() < 5e-3
                     && (variance - 1.0 / 12.0).abs() < 1.3e-3
                     && correlation.abs() < 0.016
@@ -50,7 +50,7 @@ fn noise_is_white_uniform_and_decided_by_its_seed() {
 }
 
 #[test]
-fn added_noise_has_the_asked_deviation() {
+fn added_noise_has_the_requested_deviation() {
     let mut spec = spec(PhantomKind::Ramp, [64, 64, 24]);
     spec.voxel_type = VoxelType::F32;
     let clean = fractions(&spec);
@@ -59,7 +59,7 @@ fn added_noise_has_the_asked_deviation() {
     assert_eq!(noisy, fractions(&spec));
     let added: Vec<f64> = noisy.iter().zip(&clean).map(|(a, b)| a - b).collect();
     for lag in [1, 64, 64 * 64] {
-        let [mean, variance, correlation] = moments(&added, lag);
+        let [mean, variance, correlation] = statistics(&added, lag);
         assert!(
             mean.abs() < 8e-4 && correlation.abs() < 0.016,
             "{mean} {correlation}"

@@ -163,12 +163,12 @@ fn radii_run_from_a_few_voxels_to_half_a_voxel() {
 /// The smallest distance of a vessel's wall from the volume's faces, in voxels.
 fn clearance(tree: &VesselTree, n: f64) -> f64 {
     let wall = |s: &VesselSegment| {
-        let reach = s
+        let extent = s
             .points_mm
             .iter()
             .flatten()
             .fold(0.0, |m: f64, x| m.max(x.abs()));
-        (n - 1.0) / 2.0 - reach - s.radius_mm
+        (n - 1.0) / 2.0 - extent - s.radius_mm
     };
     tree.segments.iter().map(wall).fold(f64::INFINITY, f64::min)
 }
@@ -204,7 +204,7 @@ fn a_flat_volume_has_its_tree_in_its_plane() {
     assert!(cubes <= 1e-9 && balance <= 1e-9, "{cubes} {balance}");
     let off_plane = |tree: &VesselTree| {
         let points = tree.segments.iter().flat_map(|s| &s.points_mm);
-        points.fold(0.0, |most: f64, p| most.max(p[2].abs()))
+        points.fold(0.0, |max: f64, p| max.max(p[2].abs()))
     };
     assert_eq!(off_plane(&tree), 0.0);
     assert!(off_plane(&self::tree(96, 1)) > 30.0);

@@ -14,14 +14,14 @@ use flate2::write::{GzEncoder, ZlibEncoder};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::memory::most_held;
+use super::memory::max_held;
 
 /// A decoder alone takes some of it.
 const FEW_MEGABYTES: isize = 6 << 20;
 
 /// Reading the file must fail, for little memory, and in a sentence that has `word`.
 fn refused(path: &Path, word: &str) {
-    let (volume, held) = most_held(|| read(path, &ReadOptions::default(), &Silent));
+    let (volume, held) = max_held(|| read(path, &ReadOptions::default(), &Silent));
     let error = volume.expect_err(&path.display().to_string());
     assert_eq!(error.kind(), ErrorKind::Input, "{error}");
     assert!(error.to_string().contains(word), "{error}");

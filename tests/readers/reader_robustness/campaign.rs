@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::memory::most_held;
+use super::memory::max_held;
 use super::subjects::Subjects;
 
 /// All that there are.
@@ -22,7 +22,7 @@ const CASES_VARIABLE: &str = "ANGIORAY_FUZZ_CASES";
 const ONE_VARIABLE: &str = "ANGIORAY_FUZZ_ONE";
 
 /// Beyond the file's own bytes, of which none has many.
-const MOST_MEMORY: usize = 16 << 20;
+const MAX_MEMORY: usize = 16 << 20;
 
 /// A case that takes this long never ends: its number is said before the program is given up.
 const HANG: Duration = Duration::from_secs(120);
@@ -40,7 +40,7 @@ pub struct Outcome {
 struct Figures {
     read: u64,
     refused: u64,
-    most_held: usize,
+    max_held: usize,
     longest: Duration,
 }
 
@@ -48,7 +48,7 @@ impl Figures {
     fn add(&mut self, more: &Self) {
         self.read += more.read;
         self.refused += more.refused;
-        self.most_held = self.most_held.max(more.most_held);
+        self.max_held = self.max_held.max(more.max_held);
         self.longest = self.longest.max(more.longest);
     }
 }
@@ -66,18 +66,18 @@ fn joined(parts: impl Iterator<Item = (&'static str, Figures)>) -> ByKind {
 /// Takes the cases one by one; what is wrong is said with the case's number.
 fn take(
     cases: impl Iterator<Item = u64>,
-    judge: impl Fn(u64) -> Outcome,
+    check: impl Fn(u64) -> Outcome,
 ) -> Result<ByKind, String> {
     let watch = Watch::start();
     let mut all = ByKind::new();
     for case in cases {
         watch.begin(case);
         let began = Instant::now();
-        let (outcome, held) = most_held(|| catch_unwind(AssertUnwindSafe(|| judge(case))));
+        let (outcome, held) = max_held(|| catch_unwind(AssertUnwindSafe(|| check(case))));
         let took = began.elapsed();
         let held = usize::try_from(held).unwrap_or(0);
         let outcome = outcome.map_err(|_| format!("case {case} panics"))?;
-        if held > outcome.bytes + MOST_MEMORY {
+        if held > outcome.bytes + MAX_MEMORY {
             return Err(format!(
                 "case {case} ({}) of {} bytes held {held} bytes",
                 outcome.kind, outcome.bytes
@@ -86,7 +86,7 @@ fn take(
         all.entry(outcome.kind).or_default().add(&Figures {
             read: u64::from(outcome.was_read),
             refused: u64::from(!outcome.was_read),
-            most_held: held,
+            max_held: held,
             longest: took,
         });
     }
@@ -141,7 +141,7 @@ fn number(variable: &str) -> Option<u64> {
 fn changed_headers_are_read_or_refused_and_nothing_else() {
     if let Some(one) = number(ONE_VARIABLE) {
         let subjects = Subjects::new();
-        take(one..=one, |case| subjects.judge(case)).unwrap();
+        take(one..=one, |case| subjects.check(case)).unwrap();
         return;
     }
     let count = number(CASES_VARIABLE)
@@ -153,7 +153,7 @@ fn changed_headers_are_read_or_refused_and_nothing_else() {
     let work = |worker: usize| {
         let subjects = Subjects::new();
         let cases = (0..CASES).step_by(step).skip(worker).step_by(workers);
-        take(cases, |case| subjects.judge(case)).unwrap_or_else(|wrong| {
+        take(cases, |case| subjects.check(case)).unwrap_or_else(|wrong| {
             panic!("{wrong}; {ONE_VARIABLE}=NUMBER takes a case alone");
         })
     };
@@ -172,7 +172,7 @@ fn changed_headers_are_read_or_refused_and_nothing_else() {
             "{kind:>10}: {:>7} read, {:>7} refused, {:>9} bytes held at most, {:>7.1} ms at most",
             of_kind.read,
             of_kind.refused,
-            of_kind.most_held,
+            of_kind.max_held,
             of_kind.longest.as_secs_f64() * 1e3
         );
         // Both happen, so neither branch is idle.

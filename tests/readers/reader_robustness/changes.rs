@@ -5,9 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Where changes come from: the same for the same number.
-pub struct Draws(Pcg64);
+pub struct Rng(Pcg64);
 
-impl Draws {
+impl Rng {
     pub fn of(number: u64) -> Self {
         Self(Pcg64::seed_from_u64(number))
     }
@@ -74,46 +74,46 @@ const HOSTILE_BYTES: [[u8; 8]; 8] = [
 const HEADER: usize = 700;
 
 /// Changes `bytes` once. `words` are put in the place of others.
-pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
+pub fn change(bytes: &mut Vec<u8>, words: &[String], rng: &mut Rng) {
     let size = bytes.len();
     if size == 0 {
-        bytes.push(draws.byte());
+        bytes.push(rng.byte());
         return;
     }
-    let reach = if draws.one_in(8) {
+    let range = if rng.one_in(8) {
         size
     } else {
         size.min(HEADER)
     };
-    let at = draws.below(reach);
-    let end = (at + 1 + draws.below(40)).min(size);
-    match draws.below(11) {
-        0 => bytes[at] = draws.byte(),
-        1 => bytes[at] ^= 1 << draws.below(8),
+    let at = rng.below(range);
+    let end = (at + 1 + rng.below(40)).min(size);
+    match rng.below(11) {
+        0 => bytes[at] = rng.byte(),
+        1 => bytes[at] ^= 1 << rng.below(8),
         2 | 3 => {
-            let value = HOSTILE_BYTES[draws.below(HOSTILE_BYTES.len())];
+            let value = HOSTILE_BYTES[rng.below(HOSTILE_BYTES.len())];
             // Binary headers keep their numbers at multiples of two.
             let at = at & !1;
-            let length = [2, 4, 8][draws.below(3)];
+            let length = [2, 4, 8][rng.below(3)];
             for (byte, value) in bytes[at..].iter_mut().zip(&value[..length]) {
                 *byte = *value;
             }
         }
         4 | 5 => replace_part(
             bytes,
-            reach,
+            range,
             |b| b.is_ascii_digit(),
-            draws,
-            |draws| draws.any_of(&HOSTILE_NUMBERS).to_owned(),
+            rng,
+            |rng| rng.any_of(&HOSTILE_NUMBERS).to_owned(),
         ),
         6 => replace_part(
             bytes,
-            reach,
+            range,
             |b| !b.is_ascii_whitespace(),
-            draws,
-            |draws| {
+            rng,
+            |rng| {
                 words
-                    .get(draws.below(words.len()))
+                    .get(rng.below(words.len()))
                     .cloned()
                     .unwrap_or_default()
             },
@@ -121,13 +121,13 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
         7 => drop(bytes.drain(at..end)),
         8 => {
             let part = bytes[at..end].to_vec();
-            let to = draws.below(reach);
+            let to = rng.below(range);
             bytes.splice(to..to, part);
         }
-        9 => change_line(bytes, draws),
+        9 => change_line(bytes, rng),
         _ => {
             // Much of the same: long names, long lists.
-            let part = bytes[at..end].repeat(1 + draws.below(200));
+            let part = bytes[at..end].repeat(1 + rng.below(200));
             bytes.splice(at..at, part);
         }
     }
@@ -136,32 +136,32 @@ pub fn change(bytes: &mut Vec<u8>, words: &[String], draws: &mut Draws) {
 /// Puts another text in the place of a run of bytes that are all of a kind.
 fn replace_part(
     bytes: &mut Vec<u8>,
-    reach: usize,
+    range: usize,
     kind: impl Fn(u8) -> bool,
-    draws: &mut Draws,
-    text: impl Fn(&mut Draws) -> String,
+    rng: &mut Rng,
+    text: impl Fn(&mut Rng) -> String,
 ) {
     let of_kind = |at: usize| kind(bytes[at]);
-    let starts: Vec<usize> = (0..reach)
+    let starts: Vec<usize> = (0..range)
         .filter(|&at| of_kind(at) && (at == 0 || !of_kind(at - 1)))
         .collect();
-    let Some(&start) = starts.get(draws.below(starts.len())) else {
+    let Some(&start) = starts.get(rng.below(starts.len())) else {
         return;
     };
     let length = bytes[start..].iter().take_while(|&&b| kind(b)).count();
-    bytes.splice(start..start + length, text(draws).into_bytes());
+    bytes.splice(start..start + length, text(rng).into_bytes());
 }
 
 /// Leaves a line out, doubles it, or puts it elsewhere.
-fn change_line(bytes: &mut Vec<u8>, draws: &mut Draws) {
+fn change_line(bytes: &mut Vec<u8>, rng: &mut Rng) {
     let head = bytes.len().min(HEADER);
     let mut lines: Vec<Vec<u8>> = bytes[..head]
         .split_inclusive(|&b| b == b'\n')
         .map(<[u8]>::to_vec)
         .collect();
-    let line = lines.remove(draws.below(lines.len()));
-    for _ in 0..draws.below(3) {
-        lines.insert(draws.below(lines.len() + 1), line.clone());
+    let line = lines.remove(rng.below(lines.len()));
+    for _ in 0..rng.below(3) {
+        lines.insert(rng.below(lines.len() + 1), line.clone());
     }
     bytes.splice(..head, lines.concat());
 }

@@ -3,19 +3,19 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// Counts what each thread holds, and the most it ever held since asked.
+/// Counts what each thread holds, and the most it has held since the count began.
 struct Counting;
 
 thread_local! {
     static HELD: Cell<isize> = const { Cell::new(0) };
-    static MOST: Cell<isize> = const { Cell::new(0) };
+    static MAX: Cell<isize> = const { Cell::new(0) };
 }
 
 fn count(bytes: isize) {
     // A thread that is ending has no counters any more; it no longer reads volumes either.
     let _ = HELD.try_with(|held| {
         held.set(held.get() + bytes);
-        let _ = MOST.try_with(|most| most.set(most.get().max(held.get())));
+        let _ = MAX.try_with(|max| max.set(max.get().max(held.get())));
     });
 }
 
@@ -47,16 +47,16 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// The most bytes this thread held during `work`, beyond those it held before.
-pub fn most_held<T>(work: impl FnOnce() -> T) -> (T, isize) {
+pub fn max_held<T>(work: impl FnOnce() -> T) -> (T, isize) {
     let before = HELD.get();
-    MOST.set(before);
+    MAX.set(before);
     let done = work();
-    (done, MOST.get() - before)
+    (done, MAX.get() - before)
 }
 
 #[test]
 fn the_memory_count_sees_an_allocation() {
-    let (block, held) = most_held(|| vec![1u8; 3 << 20]);
+    let (block, held) = max_held(|| vec![1u8; 3 << 20]);
     assert_eq!(block.len(), 3 << 20);
     assert!(held >= 3 << 20);
 }

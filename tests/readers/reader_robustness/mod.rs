@@ -19,10 +19,10 @@ use std::path::{Path, PathBuf};
 use angioray::progress::Silent;
 use angioray::volume::{ReadOptions, Volume, read};
 
-use memory::most_held;
+use memory::max_held;
 
 /// No fixture is larger than 1 KiB.
-const MOST_MEMORY: isize = 16 << 20;
+const MAX_MEMORY: isize = 16 << 20;
 
 fn fixtures() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/volumes");
@@ -51,8 +51,8 @@ fn write_anew(path: &Path, contents: &[u8]) {
 
 /// Reads the file under the memory limit; an error must be one sentence that names it.
 fn read_checked(path: &Path) -> angioray::Result<Volume> {
-    let (volume, held) = most_held(|| read(path, &ReadOptions::default(), &Silent));
-    assert!(held < MOST_MEMORY, "{} held {held} bytes", path.display());
+    let (volume, held) = max_held(|| read(path, &ReadOptions::default(), &Silent));
+    assert!(held < MAX_MEMORY, "{} held {held} bytes", path.display());
     if let Err(error) = &volume {
         let message = error.to_string();
         let named = message.starts_with(&path.display().to_string());
@@ -119,16 +119,16 @@ fn the_comparison_sees_another_volume() {
     assert_ne!(of("np_i16.npy").0, of("sitk_i16.nrrd").0);
 }
 
-/// Few bytes that announce 2^40 voxels, in every way that hides their true size.
+/// Few bytes that announce 2^40 voxels, in every encoding that hides their true size.
 #[test]
 fn lying_sizes_cost_neither_time_nor_memory() {
     let folder = copies();
     let path = |name: &str| folder.path().join(name);
     let refuse = |name: &str, bytes: &[u8]| {
         fs::write(path(name), bytes).unwrap();
-        let (volume, held) = most_held(|| read(&path(name), &ReadOptions::default(), &Silent));
+        let (volume, held) = max_held(|| read(&path(name), &ReadOptions::default(), &Silent));
         let error = volume.expect_err(name);
-        assert!(held < MOST_MEMORY, "{name} held {held} bytes: {error}");
+        assert!(held < MAX_MEMORY, "{name} held {held} bytes: {error}");
     };
     let gz = fs::read(path("nib2_i16.nii.gz")).unwrap();
     let bz2 = fs::read(path("slice_008.raw.bz2")).unwrap();
@@ -173,7 +173,7 @@ fn gzip_is_decoded_into_place_and_plain_voxels_cost_nothing() {
     let held = |name: &str, contents: &[u8]| {
         let path = folder.path().join(name);
         fs::write(&path, contents).unwrap();
-        let (volume, held) = most_held(|| read(&path, &ReadOptions::default(), &Silent));
+        let (volume, held) = max_held(|| read(&path, &ReadOptions::default(), &Silent));
         assert_eq!(volume.unwrap().voxels().bytes(), voxels, "{name}");
         held
     };

@@ -32,10 +32,10 @@ fn refused_memory_ends_the_program_in_words_unless_it_is_an_error() {
         "{said}"
     );
     assert!(said.contains("\nhint: "), "{said}");
-    // The control: what grows with a volume is an error, and the program goes on.
+    // The control: what grows with a volume is an error, and the program continues.
     assert_eq!(room::<u8>(ABSURD, "it").unwrap_err().exit_code(), 74);
     let layout = Layout::from_size_align(64, 8).unwrap();
-    // SAFETY: the layout has a size, and the block is given back as it was asked for.
+    // SAFETY: the layout has a size, and the block is given back as it was allocated.
     unsafe {
         let block = Allocator.alloc(layout);
         assert!(!block.is_null());

@@ -21,7 +21,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::campaign::Outcome;
-use super::changes::{Draws, change};
+use super::changes::{Rng, change};
 use super::{copies, fixtures, write_anew};
 
 const SCENES: [&str; 4] = [
@@ -83,7 +83,7 @@ pub struct Subjects {
 }
 
 impl Subjects {
-    /// Kinds that are told apart in the figures.
+    /// Kinds that are counted separately in the figures.
     pub const KINDS: usize = 9;
 
     pub fn new() -> Self {
@@ -128,14 +128,14 @@ impl Subjects {
     }
 
     /// Makes the case of that number and reads it.
-    pub fn judge(&self, case: u64) -> Outcome {
-        let mut draws = Draws::of(case);
+    pub fn check(&self, case: u64) -> Outcome {
+        let mut rng = Rng::of(case);
         // Volumes are most of the originals; every eighth case is another thing.
         let others = self.originals.len() - self.volumes();
-        let at = if draws.one_in(8) {
-            self.volumes() + draws.below(others)
+        let at = if rng.one_in(8) {
+            self.volumes() + rng.below(others)
         } else {
-            draws.below(self.volumes())
+            rng.below(self.volumes())
         };
         let original = &self.originals[at];
         let mut bytes = original.bytes.clone();
@@ -144,8 +144,8 @@ impl Subjects {
             Kind::Name => &mut name,
             _ => &mut bytes,
         };
-        for _ in 0..draws.below(4).max(1) {
-            change(changed, &self.words, &mut draws);
+        for _ in 0..rng.below(4).max(1) {
+            change(changed, &self.words, &mut rng);
         }
         let outcome = |bytes: usize, was_read| Outcome {
             kind: original.label,
@@ -157,7 +157,7 @@ impl Subjects {
             Kind::Scene => outcome(bytes.len(), scene_is_read(&text())),
             Kind::Transfer => outcome(bytes.len(), transfer_is_read(&text())),
             Kind::Picture => {
-                if draws.one_in(2) {
+                if rng.one_in(2) {
                     mend_checksums(&mut bytes);
                 }
                 let path = self.write(&original.name, &bytes);
@@ -166,7 +166,7 @@ impl Subjects {
             Kind::Name => {
                 let path = self.folder.path().join(file_name(&name));
                 write_anew(&path, &bytes);
-                let was_read = volume_is_read(&path, &mut draws);
+                let was_read = volume_is_read(&path, &mut rng);
                 let _ = fs::remove_file(&path);
                 outcome(bytes.len(), was_read)
             }
@@ -174,10 +174,10 @@ impl Subjects {
                 let bytes = match wrapping {
                     Wrapping::Plain => bytes,
                     Wrapping::Gzip => zipped(&bytes),
-                    Wrapping::Npz => archived(&bytes, &mut draws),
+                    Wrapping::Npz => archived(&bytes, &mut rng),
                 };
                 let path = self.write(&original.name, &bytes);
-                let was_read = volume_is_read(&path, &mut draws);
+                let was_read = volume_is_read(&path, &mut rng);
                 // It may be another's data.
                 if wrapping == Wrapping::Plain {
                     write_anew(&path, &original.bytes);
@@ -226,7 +226,7 @@ fn volumes() -> Vec<Original> {
         };
         if name.ends_with(".gz") {
             let mut inside = Vec::new();
-            // One of them ends in padding, which is none of the data.
+            // One of them ends in padding, which is not part of the data.
             let _ = MultiGzDecoder::new(&bytes[..]).read_to_end(&mut inside);
             assert!(!inside.is_empty(), "{name}");
             add(format!("within_{name}"), Wrapping::Gzip, label, inside);
@@ -274,17 +274,17 @@ fn words(originals: &[Original]) -> Vec<String> {
 }
 
 /// Reads as `info` does, now and then with what flags may say.
-fn volume_is_read(path: &Path, draws: &mut Draws) -> bool {
+fn volume_is_read(path: &Path, rng: &mut Rng) -> bool {
     let mut options = ReadOptions::default();
-    if draws.one_in(8) {
-        options.frame = draws.below(4) as u32;
+    if rng.one_in(8) {
+        options.frame = rng.below(4) as u32;
     }
-    if draws.one_in(16) {
+    if rng.one_in(16) {
         options.raw = RawLayout {
             size: "5x4x3".parse().ok(),
             element: "f32be".parse().ok(),
             spacing_mm: None,
-            offset_bytes: [None, Some(1), Some(u64::MAX)][draws.below(3)],
+            offset_bytes: [None, Some(1), Some(u64::MAX)][rng.below(3)],
         };
     }
     let volume = match read(path, &options, &Silent) {
@@ -300,7 +300,7 @@ fn volume_is_read(path: &Path, draws: &mut Draws) -> bool {
     let (center, radius) = volume.bounding_sphere();
     assert!(!center.is_nan() && !radius.is_nan());
     // Tables of a fixed size, which are dear beside the rest.
-    if draws.one_in(16) {
+    if rng.one_in(16) {
         let histogram = Histogram::of(&volume, 64);
         assert_eq!(histogram.total(), volume.dims().voxels());
         assert!(suggested_iso(&histogram).is_finite() && histogram.otsu().is_finite());
@@ -352,11 +352,11 @@ fn zipped(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// An archive of one to three times the same array.
-fn archived(bytes: &[u8], draws: &mut Draws) -> Vec<u8> {
+fn archived(bytes: &[u8], rng: &mut Rng) -> Vec<u8> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let methods = [CompressionMethod::Stored, CompressionMethod::Deflated];
-    for n in 0..1 + draws.below(3) {
-        let method = methods[draws.below(2)];
+    for n in 0..1 + rng.below(3) {
+        let method = methods[rng.below(2)];
         let options = SimpleFileOptions::default().compression_method(method);
         archive.start_file(format!("arr_{n}.npy"), options).unwrap();
         archive.write_all(bytes).unwrap();

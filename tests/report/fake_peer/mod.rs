@@ -20,7 +20,7 @@ pub const LOAD: &str = r#"*'"load"'*) echo '{"loaded":1.5}' ;;"#;
 pub const READY: &str = r#"*'"scene"'*) echo '{"ready":2.5,"supported":true,"note":"flat"}' ;;"#;
 
 /// A peer of the answers given as branches of a `case`; `$1` is the folder of the script, into
-/// which it copies what it hears.
+/// which it copies what it reads.
 pub struct Fake {
     pub folder: TempDir,
     pub command: String,

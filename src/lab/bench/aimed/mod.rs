@@ -31,7 +31,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     pub rays: u64,
-    /// Of the reference.
+    /// Rays for which the reference hits something.
     pub hits: u64,
     pub missed: u64,
     pub extra: u64,
@@ -44,7 +44,7 @@ pub struct Tally {
     /// Answers that are proven and yet not the reference's, where the reference is certain.
     pub wrongly_proven: u64,
     /// The greatest distance of answers that agree, in voxels.
-    pub most_apart: f64,
+    pub max_apart: f64,
 }
 
 impl Tally {
@@ -63,7 +63,7 @@ impl Tally {
             borderline: self.borderline + other.borderline,
             undecided: self.undecided + other.undecided,
             wrongly_proven: self.wrongly_proven + other.wrongly_proven,
-            most_apart: self.most_apart.max(other.most_apart),
+            max_apart: self.max_apart.max(other.max_apart),
         }
     }
 }
@@ -73,7 +73,7 @@ impl Tally {
 pub struct Report {
     /// One an aim, in the order of [`Aim::ALL`].
     pub tallies: [Tally; Aim::ALL.len()],
-    /// For finding the fault: target number, ray, answer, verdict.
+    /// Details of wrong answers, for finding the fault: target number, ray, answer, verdict.
     pub wrong: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Report {
         self.tallies.into_iter().fold(Tally::default(), Tally::add)
     }
 
-    /// This report and that of `later` rays.
+    /// Combines this report with that of `later` rays.
     #[must_use]
     pub fn and(mut self, later: Self) -> Self {
         for (of, tally) in self.tallies.iter_mut().zip(later.tallies) {
@@ -126,7 +126,7 @@ impl fmt::Display for Report {
                 t.borderline,
                 t.undecided,
                 t.wrongly_proven,
-                t.most_apart
+                t.max_apart
             )?;
         }
         self.wrong.iter().try_for_each(|line| writeln!(f, "{line}"))
@@ -252,7 +252,7 @@ fn check_one(
         ..Tally::default()
     };
     match verdict {
-        HitVerdict::Agrees { apart } => tally.most_apart = apart,
+        HitVerdict::Agrees { apart } => tally.max_apart = apart,
         HitVerdict::Borderline => tally.borderline = 1,
         HitVerdict::Missed => tally.missed = 1,
         HitVerdict::Extra => tally.extra = 1,

@@ -9,18 +9,18 @@ use glam::DVec3;
 use super::Target;
 use crate::lab::bench::rng::Rng;
 
-/// What a ray is aimed at.
+/// The feature of the volume at which a ray is aimed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aim {
-    /// Through a voxel: the corner of eight cells.
+    /// A point through a voxel: the corner of eight cells.
     Corner,
-    /// Through a cell's edge, or along it.
+    /// A ray through a cell's edge, or along it.
     Edge,
-    /// In the plane of cell faces.
+    /// A ray in the plane of cell faces.
     InFace,
-    /// Along an axis, on lines of the grid or a hair beside.
+    /// A ray along an axis, on lines of the grid or a hair beside.
     GridLine,
-    /// Through the middle of a cell's face, nearly in its plane.
+    /// A ray through the middle of a cell's face, nearly in its plane.
     Grazing,
     /// Touching the surface, or passing it at 1e-6 to 1e-2 voxel.
     Tangent,
@@ -57,7 +57,7 @@ impl Aim {
 pub struct AimedRay {
     pub aim: Aim,
     pub origin: [f32; 3],
-    /// Index units per unit of t.
+    /// The direction, in index units per unit of t.
     pub dir: [f32; 3],
 }
 
@@ -201,7 +201,7 @@ impl Aimer<'_> {
         }
     }
 
-    /// Through a point of few digits, from outside, exactly; every other one a hair beside.
+    /// A ray through a point of few digits, from outside, exactly; every other one a hair beside.
     fn through(&mut self, at: DVec3) -> (DVec3, DVec3) {
         let dir = self.plain_direction();
         let steps = f64::from(40 + self.rng.below(64));
@@ -218,8 +218,8 @@ impl Aimer<'_> {
         (origin, dir)
     }
 
-    /// At right angles to the gradient at a point of the surface, moved off it by 0 or 1e-6 to 1e-2
-    /// voxel; any ray where the target has no surface nearby.
+    /// A ray at right angles to the gradient at a point of the surface, moved off it by 0 or 1e-6 to
+    /// 1e-2 voxel; any ray where the target has no surface nearby.
     fn tangent(&mut self) -> (DVec3, DVec3) {
         let Some((at, gradient)) = self.surface() else {
             let at = self.inside();

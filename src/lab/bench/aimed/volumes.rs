@@ -23,7 +23,7 @@ const KINDS: u32 = 5;
 /// one, signed floats, thin vessels in turn. Sides of 2 to 15 voxels, now and then 32.
 ///
 /// # Errors
-/// None in practice: the volumes are sound.
+/// The volume is refused, as it is if there is no memory for it.
 pub fn target(seed: u64, n: u32) -> Result<Target> {
     let mut rng = Rng::new(seed ^ (u64::from(n) << 32 | 0x7a61));
     let longest = if rng.one_in(12) { 32 } else { 15 };
@@ -93,7 +93,7 @@ pub fn target(seed: u64, n: u32) -> Result<Target> {
     })
 }
 
-/// Of all voxels, x fastest.
+/// The positions of all voxels, x fastest.
 fn positions([nx, ny, nz]: [u64; 3]) -> impl Iterator<Item = DVec3> {
     let at = |x: u64, y: u64, z: u64| DVec3::new(x as f64, y as f64, z as f64);
     (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| at(x, y, z))))

@@ -31,10 +31,10 @@ const COLUMNS: [(&str, &str, Shown); 7] = [
     ("clear_misses", "clear misses", Shown::Fixed(0)),
 ];
 
-/// What a ray hit, as columns of the histogram.
+/// The classes of rays that are the histogram's columns.
 const CLASSES: [&str; 3] = ["hits", "near-misses", "clear misses"];
 
-/// Of one volume.
+/// Histograms of the iterations in one volume.
 #[derive(Serialize, Deserialize)]
 struct IterationCounts {
     /// Pixels by class; bin b counts rays of 2^(b − 1) to 2^b − 1 iterations, bin 0 those of none.

@@ -19,7 +19,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// What the paper gains in all.
+/// The overall speed-up that the paper reports.
 const PAPER_SPEEDUP: f64 = 1.2;
 
 fn run(bench: &Bench) -> Result<Outcome> {

@@ -121,7 +121,7 @@ fn base(bench: &Bench, dataset: &Dataset) -> Result<Case> {
     Ok(Case::new("none", scene))
 }
 
-/// Of the page's plot; none where nothing was hit.
+/// The measurement as a point of the page's plot; none if nothing was hit.
 fn point(protocol: Protocol, measured: &Measurement) -> Option<Point> {
     Some(Point {
         label: format!("no effects, {protocol}"),

@@ -50,8 +50,8 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
 /// The errors and counters of a setting's picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct PictureError {
-    /// In the order of [`RankingMetric::of_mode`], unscaled; the first of every mode is a share, or a
-    /// colour's of 0 to 1.
+    /// The errors in the order of [`RankingMetric::of_mode`], unscaled; the first of every mode is a
+    /// share, or a colour's of 0 to 1.
     errors: Vec<Option<f64>>,
     samples_per_ray: f64,
     nodes_per_ray: f64,
@@ -64,7 +64,7 @@ struct Placed {
     error: PictureError,
     median_ms: f64,
     min_ms: f64,
-    /// Whether it is on the front, by each of the errors.
+    /// Whether the setting is on the front, for each of the errors.
     on_front: Vec<bool>,
 }
 
@@ -161,8 +161,8 @@ fn place(
     Ok(placed)
 }
 
-/// What is seen in a mode, as the text of a scene file: the dataset's surface, unshaded; the whole
-/// value range; emission and absorption that rises from the iso value to a half of a voxel's path.
+/// The picture of a mode, as the text of a scene file: the dataset's surface, unshaded; the whole value
+/// range; or emission and absorption that rises from the iso value to a half of a voxel's path.
 fn view(dataset: &Dataset, mode: Mode) -> String {
     let (iso, range) = (dataset.iso, dataset.volume.range());
     match mode {
@@ -253,7 +253,7 @@ fn tabulate(outcome: &mut Outcome, dataset: &Dataset, mode: Mode, placed: &[Plac
     ));
 }
 
-/// Of the error that is so many-th in [`RankingMetric::of_mode`].
+/// The scatter plot of the error at this place of [`RankingMetric::of_mode`].
 fn scatter(mode: Mode, at: usize, placed: &[Placed]) -> Scatter {
     let metric = &RankingMetric::of_mode(mode)[at];
     let point = |one: &Placed| {

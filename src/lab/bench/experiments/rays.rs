@@ -97,6 +97,6 @@ fn row(aim: &str, tally: &Tally) -> Vec<Cell> {
         tally.wrongly_proven.into(),
         tally.borderline.into(),
         tally.undecided.into(),
-        tally.most_apart.into(),
+        tally.max_apart.into(),
     ]
 }

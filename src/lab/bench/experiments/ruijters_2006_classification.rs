@@ -27,7 +27,7 @@ pub const EXPERIMENT: Experiment = Experiment {
 const PAPER_MS: [f64; 2] = [6.5, 3.5];
 const PAPER_VOXELS: f64 = 512.0 * 512.0 * 512.0;
 
-/// Of the pictures; small, for what is timed happens before the first ray.
+/// The side of the pictures, px; small, because what is timed happens before the first ray.
 const SIDE_PX: u32 = 32;
 
 /// Shares of the value range at which the surface or the medium begins, one after the other.
@@ -56,7 +56,7 @@ struct Changed {
     what: String,
     traverse: String,
     times: Times,
-    /// With the volume's first frame, and with it the volume.
+    /// The bytes uploaded with the volume's first frame, the volume included.
     first_bytes: u64,
     /// The most of any change.
     uploaded_bytes: u64,

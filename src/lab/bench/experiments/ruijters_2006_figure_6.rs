@@ -18,7 +18,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// Cells.
+/// The leaf edges that are measured, in cells.
 fn edges(preset: Preset) -> &'static [u32] {
     match preset {
         Preset::Quick => &[4, 8, 16, 32],
@@ -26,8 +26,8 @@ fn edges(preset: Preset) -> &'static [u32] {
     }
 }
 
-/// Not the distance map, whose leaves know how far around them nothing is: the paper's octree has
-/// levels.
+/// The traversal that is measured. Not the distance map, whose leaves know how far around them nothing
+/// is: the paper's octree has levels.
 const TRAVERSE: Traverse = Traverse::KdRestart;
 
 fn run(bench: &Bench) -> Result<Outcome> {

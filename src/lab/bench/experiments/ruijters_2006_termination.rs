@@ -21,7 +21,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// fps: none, early termination for each ray.
+/// The paper's frames per second: without early termination, and with it for each ray.
 const PAPER: [f64; 2] = [2.2, 5.2];
 /// The opacity at which a ray ends.
 const TERMINATION: f64 = 0.99;

@@ -19,7 +19,7 @@ pub const EXPERIMENT: Experiment = Experiment {
 
 const STEPS: [f64; 2] = [1.0, 5.0];
 const REFINERS: [&str; 3] = ["none", "bisection:6", "regula-falsi:5"];
-/// fps: step 1 unrefined, and step 5 with six bisections.
+/// The paper's frames per second: step 1 unrefined, and step 5 with six bisections.
 const PAPER: [(f64, &str, f64); 2] = [(1.0, "none", 24.3), (5.0, "bisection:6", 66.4)];
 
 fn run(bench: &Bench) -> Result<Outcome> {

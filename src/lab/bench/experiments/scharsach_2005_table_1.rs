@@ -20,7 +20,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// fps of the paper's sizes: basic, with skipping, with skipping and step 5 refined.
+/// The paper's frames per second for its sizes: basic, with skipping, with skipping and step 5 refined.
 const PAPER: [[f64; 3]; 3] = [[14.6, 41.7, 350.0], [4.4, 24.3, 66.4], [1.5, 5.1, 15.1]];
 
 fn run(bench: &Bench) -> Result<Outcome> {

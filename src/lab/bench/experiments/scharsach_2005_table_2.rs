@@ -16,7 +16,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// fps of the paper's sizes: unshaded, shaded.
+/// The paper's frames per second for its sizes: unshaded, shaded.
 const PAPER: [[f64; 2]; 3] = [[40.5, 26.7], [23.9, 11.3], [4.4, 1.5]];
 
 fn run(bench: &Bench) -> Result<Outcome> {

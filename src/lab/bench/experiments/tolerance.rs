@@ -24,7 +24,7 @@ use crate::volume::Volume;
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "tolerance",
-    about: "whether what --max-error chooses keeps its bound in random scenes, and how near it \
+    about: "whether what --max-error chooses meets its bound in random scenes, and how near it \
             comes to the fastest setting that does",
     takes_volumes: false,
     counts_rays: false,
@@ -37,10 +37,14 @@ const COLUMNS: [(&str, &str, Shown); 11] = [
     ("mode", "mode", Shown::Short),
     ("metric", "metric", Shown::Short),
     ("scenes", "scenes", Shown::Fixed(0)),
-    ("met", "reported kept", Shown::Fixed(0)),
+    ("met", "reported within bound", Shown::Fixed(0)),
     ("kept", "kept", Shown::Fixed(0)),
     ("within", "within the limit given", Shown::Fixed(0)),
-    ("in_vain", "kept though reported not", Shown::Fixed(0)),
+    (
+        "in_vain",
+        "within bound though reported not",
+        Shown::Fixed(0),
+    ),
     ("ratio_median", "time to the best, median", Shown::Fixed(2)),
     ("ratio_p95", "p95", Shown::Fixed(2)),
     ("choosing_ms", "choosing ms, median", Shown::Fixed(0)),
@@ -55,10 +59,10 @@ const MAX_SLOWDOWN: f64 = 1.7;
 
 /// A choice that takes at most so many times the fastest's time is near it.
 const NEAR: f64 = 1.3;
-/// Of a share that is computed from another.
+/// The rounding error of a share that is computed from another.
 const ROUNDING: f64 = 1e-9;
 
-/// Of colour differences, so tight that the grid holds every adaptive bound.
+/// A limit of colour differences so tight that the grid holds every adaptive bound.
 const ANY_LIMIT: f64 = 0.0;
 
 fn scenes(preset: Preset) -> u64 {
@@ -74,16 +78,16 @@ fn scenes(preset: Preset) -> u64 {
 struct Trial {
     mode: Mode,
     bound: ErrorBound,
-    /// Whether the choice was reported to keep the bound, and whether it does.
+    /// Whether the choice was reported to be within the bound; `kept` says whether it is.
     met: bool,
     kept: bool,
-    /// Whether its error is within the upper limit that was given.
+    /// Whether the error is within the reported upper limit.
     within: bool,
     /// Time of the chosen setting to that of the fastest that keeps the bound; where both do.
     ratio: Option<f64>,
     choosing_ms: f64,
     rays: u64,
-    /// For the user, where the bound is not kept.
+    /// A sentence for the user, if the bound is broken.
     story: String,
 }
 
@@ -210,7 +214,7 @@ impl<'a> Request<'a> {
         renderer: &mut Renderer,
         bench: &Bench,
     ) -> Result<Vec<Scene>> {
-        let mut keeping = Vec::new();
+        let mut retaining = Vec::new();
         for setting in candidates(self.mode, ANY_LIMIT)?.concat() {
             bench.check_stop()?;
             let options = setting.over(&self.options).checked()?;
@@ -218,13 +222,13 @@ impl<'a> Request<'a> {
             let figure = self.figure_of(&scene, reference, renderer)?;
             if self.bound.is_met_by(figure) {
                 let ms = renderer.render(&scene, Wanted::DISPLAY)?.render_ms;
-                keeping.push((scene, ms));
+                retaining.push((scene, ms));
             }
         }
-        let times = keeping.iter().map(|(_, ms)| *ms);
+        let times = retaining.iter().map(|(_, ms)| *ms);
         let fastest = times.fold(f64::INFINITY, f64::min);
-        keeping.retain(|(_, ms)| *ms <= MAX_SLOWDOWN * fastest);
-        Ok(keeping.into_iter().map(|(scene, _)| scene).collect())
+        retaining.retain(|(_, ms)| *ms <= MAX_SLOWDOWN * fastest);
+        Ok(retaining.into_iter().map(|(scene, _)| scene).collect())
     }
 }
 
@@ -300,7 +304,7 @@ fn outcome(trials: &[Trial], repeats: usize, device: &str) -> Outcome {
         sections: vec![section(trials)],
         failure: (broken as f64 > max_broken * (1.0 + ROUNDING)).then(|| {
             format!(
-                "{broken} of {met} choices break the bound that they were reported to keep: more than {:.0} %",
+                "{broken} of {met} choices break the bound that they were reported to meet: more than {:.0} %",
                 100.0 * (1.0 - CONFIDENCE)
             )
         }),
@@ -346,12 +350,13 @@ fn table(trials: &[Trial]) -> Table {
     table
 }
 
-/// What the trials show: `met` of them are reported to keep the bound, of which `broken` do not.
+/// The findings of the trials: `met` of them are reported to be within the bound, of which `broken` are
+/// not.
 fn findings(trials: &[Trial], met: usize, broken: usize) -> Vec<String> {
     let kept = met - broken;
     let share = kept as f64 / met.max(1) as f64;
     let mut findings = vec![format!(
-        "of {} random scenes {met} have a setting that is reported to keep the bound; in {kept} of \
+        "of {} random scenes {met} have a setting that is reported to meet the bound; in {kept} of \
              them ({:.1} %) the whole picture of the reference agrees",
         trials.len(),
         100.0 * share
@@ -378,7 +383,7 @@ fn findings(trials: &[Trial], met: usize, broken: usize) -> Vec<String> {
     findings
 }
 
-/// What choosing costs, against how near the choice comes to the fastest.
+/// The plot of the cost of choosing against how near the choice comes to the fastest.
 fn section(trials: &[Trial]) -> Section {
     let points = trials.iter().filter_map(|trial| {
         Some(Point {
@@ -441,7 +446,7 @@ mod tests {
         assert!(failure.starts_with("2 of 100 choices"), "{failure}");
         assert!(failure.ends_with("more than 1 %"), "{failure}");
 
-        // Where nothing was reported kept, nothing is broken.
+        // Where nothing was reported within bound, nothing is broken.
         let mut unmet = trials(3, 0);
         for trial in &mut unmet {
             (trial.met, trial.ratio) = (false, None);

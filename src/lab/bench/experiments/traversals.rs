@@ -137,11 +137,11 @@ struct Measurement {
     times: Times,
     nodes_per_ray: f64,
     samples_per_ray: f64,
-    /// Whether the picture is the baseline's.
+    /// Whether the picture equals the baseline's.
     same: bool,
 }
 
-/// In the order of [`Traverse::ALL`].
+/// Measures the traversals in the order of [`Traverse::ALL`].
 fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<Measurement>> {
     let scenes = Traverse::ALL.map(|traverse| by(scene, traverse));
     let frames: Vec<Frame> = scenes

@@ -25,11 +25,11 @@ pub const EXPERIMENT: Experiment = Experiment {
     run,
 };
 
-/// Voxels.
+/// The vessels' radii, in voxels.
 const RADII: [f64; 4] = [0.5, 0.75, 1.0, 2.5];
-/// In each volume.
+/// The number of vessels in each volume.
 const VESSELS: usize = 8;
-/// Voxels.
+/// The steps, in voxels.
 const STEPS: [f64; 4] = [2.0, 1.0, 0.5, 0.25];
 const REFINERS: [&str; 5] = [
     "none",
@@ -47,7 +47,7 @@ const MIP_BASELINE: Method = Method::Steps(0.25, false);
 /// How a ray is sampled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Method {
-    /// At steps of so many voxels; with or without a probe between them.
+    /// Fixed steps of so many voxels; with or without a probe between them.
     Steps(f64, bool),
     Exact,
 }
@@ -118,9 +118,9 @@ impl Setting {
 /// One volume's figures.
 #[derive(Serialize, Deserialize)]
 struct Measured {
-    /// In the order of [`Setting::all`].
+    /// The results for surfaces, in the order of [`Setting::all`].
     iso: Vec<(DepthError, Times)>,
-    /// In the order of [`Method::all`].
+    /// The results for projections, in the order of [`Method::all`].
     mip: Vec<(ValueError, Times)>,
     /// Pixels that are left out, as rounding decides on them: of exact casting, and of all settings
     /// together.
@@ -330,7 +330,7 @@ fn errors<E>(
     errors.collect()
 }
 
-/// What exact casting costs, as ratios, one a volume.
+/// The cost of exact casting, as ratios, one for each volume.
 #[derive(Default)]
 struct Costs {
     iso: Vec<f64>,

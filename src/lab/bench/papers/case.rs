@@ -16,7 +16,7 @@ pub struct Case {
     pub same_as: Option<usize>,
 }
 
-/// What the paper measured on its machine; its ratios are to the first case's figure.
+/// The measurements of the paper on its machine; its ratios are to the first case's figure.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Paper {
     pub fps: Option<f64>,
@@ -83,7 +83,7 @@ pub fn plain_steps(scene: &Scene, step_voxels: f64, refine: Refine) -> Result<Sc
     Ok(scene)
 }
 
-/// The same scene without skipping.
+/// Returns the scene without skipping.
 pub fn unskipped(mut scene: Scene) -> Scene {
     scene.sampling.skip = false;
     scene

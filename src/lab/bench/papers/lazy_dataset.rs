@@ -15,7 +15,7 @@ pub struct LazyDataset<'a> {
 }
 
 enum Origin<'a> {
-    /// Named by the user.
+    /// A dataset that the user named.
     Named(&'a Dataset),
     /// Made when it is first needed.
     Phantom {

@@ -14,7 +14,7 @@ use crate::scene::{Picture, Scene};
 
 use super::{Case, Paper};
 
-/// What is measured of one case.
+/// The measurements of one case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     pub name: String,
@@ -24,7 +24,7 @@ pub struct Measurement {
     pub samples: f64,
     /// Nodes a ray.
     pub nodes: f64,
-    /// Whether the picture equals that of the case that it should.
+    /// Whether the picture equals that of the case that it should equal.
     pub same: Option<bool>,
     pub surface: Option<SurfaceError>,
     pub light: Option<LightError>,
@@ -35,7 +35,7 @@ pub struct Measurement {
 pub struct SurfaceError {
     pub missed_share: Option<f64>,
     pub extra_share: Option<f64>,
-    /// Voxels.
+    /// The mean depth error, in voxels.
     pub depth_mean: Option<f64>,
     pub depth_p99: Option<f64>,
     pub depth_max: Option<f64>,

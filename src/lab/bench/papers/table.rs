@@ -5,7 +5,7 @@ use crate::lab::report::{Cell, Shown, Table};
 
 use super::Measurement;
 
-/// Which errors a table shows.
+/// The errors that a table shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Errors {
     Surface,

@@ -22,7 +22,7 @@ const ADAPTIVE: &[QuadratureMethod] = &[QuadratureMethod::Adaptive];
 /// Two values apart, so that the opacity at 100 is 0.03 whichever way the points are read.
 const MEDIUM: &[(f64, f64)] = &[(0.0, 0.0), (200.0, 0.06)];
 
-/// The same picture under each of the rules.
+/// The scenes that show one picture under each of the rules.
 fn under(
     rules: &[QuadratureMethod],
     view: &View,

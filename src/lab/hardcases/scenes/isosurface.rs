@@ -138,7 +138,7 @@ pub fn step_edge(volume: &Volume) -> Vec<HardScene> {
     ]
 }
 
-/// Along an axis a ray goes through every voxel's centre.
+/// Scenes along an axis, in which a ray goes through every voxel's centre.
 pub fn corner_voxels(volume: &Volume) -> Vec<HardScene> {
     let along = [("x", DVec3::X), ("-y", DVec3::NEG_Y), ("z", DVec3::Z)];
     let oblique = [("oblique", OBLIQUE), ("behind", -OBLIQUE)];

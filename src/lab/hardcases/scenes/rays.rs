@@ -6,7 +6,7 @@ use super::super::HardScene;
 use super::view::{OBLIQUE, View};
 use crate::volume::Volume;
 
-/// Along axes, and across an edge from cell to cell.
+/// Directions along axes, and across an edge from cell to cell.
 const ALONG: [(&str, DVec3); 7] = [
     ("x", DVec3::X),
     ("-x", DVec3::NEG_X),

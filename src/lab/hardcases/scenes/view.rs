@@ -16,7 +16,7 @@ fn list(v: DVec3) -> String {
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
 }
 
-/// Up in the picture for an eye that way.
+/// The direction that is up in the picture for an eye in this direction.
 fn up(toward_eye: DVec3) -> DVec3 {
     if toward_eye.x == 0.0 && toward_eye.y == 0.0 {
         DVec3::Y
@@ -73,7 +73,7 @@ impl View {
         self
     }
 
-    /// One more line.
+    /// Adds one line.
     pub fn with(mut self, line: &str) -> Self {
         self.lines.push_str(line);
         self.lines.push('\n');

@@ -40,7 +40,7 @@ const TYPES: [&str; 11] = [
 /// 9 x 8 x 7 voxels of noise over the whole range of a type, both its ends among them.
 fn typed(member: usize) -> Result<HardVolume> {
     const DIMS: [u64; 3] = [9, 8, 7];
-    /// From `low` to `high`, which the volume's first two voxels are.
+    /// Values from `low` to `high`, which the volume's first two voxels are.
     fn spread(low: f64, high: f64) -> impl Fn(DVec3) -> f64 {
         move |p| match [p.x, p.y, p.z] {
             [0.0, 0.0, 0.0] => low,
@@ -146,8 +146,8 @@ const ORIENTATIONS: [&str; 48] = [
     "33", "34", "35", "36", "37", "38", "39", "40", "41", "42", "43", "44", "45", "46", "47",
 ];
 
-/// Of orientation `member`, 0 to 47: which content axis each stored axis runs along, and whether
-/// against it. Number 0 is the content as it is.
+/// The axes of orientation `member`, 0 to 47: which content axis each stored axis runs along, and
+/// whether against it. Number 0 is the content as it is.
 pub fn orientation_of(member: usize) -> ([usize; 3], [bool; 3]) {
     const ORDERS: [[usize; 3]; 6] = [
         [0, 1, 2],

@@ -1,5 +1,5 @@
 //! Another renderer beside this one: a *peer* is a program that is started once and draws the same
-//! volume and scene, its time taken by itself, its picture evaluated as ours.
+//! volume and scene, timing itself, its picture evaluated like ours.
 //!
 //! It is talked to over its standard input and output, one JSON object a line
 //! (scripts/peers/README.md): it says hello, loads a volume, prepares scenes of it in its own
@@ -36,7 +36,7 @@ pub struct Peer {
     version: String,
     device: String,
     settings: Vec<OfferedSetting>,
-    /// Voxels on their way there, planes on their way back.
+    /// The folder for voxels that are sent and planes that come back.
     folder: TempDir,
     /// How many scenes it was requested to prepare.
     scenes: u64,
@@ -50,15 +50,15 @@ pub struct PeerScene {
     tone: Tone,
     /// The time of what is done once for the scene, such as extracting a mesh.
     pub ready_ms: f64,
-    /// In what its picture differs from what the scene says, other than by sampling.
+    /// How its picture differs from what the scene says, other than by sampling.
     pub note: Option<String>,
 }
 
-/// Whether a peer can draw a scene.
+/// The readiness of a peer to draw a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readiness {
     Ready(PeerScene),
-    /// It cannot draw such a scene.
+    /// The peer cannot draw such a scene.
     Unsupported {
         why: String,
     },
@@ -76,16 +76,16 @@ pub struct PeerTime {
 #[derive(Debug, Clone)]
 pub struct PeerFrame {
     pub time: PeerTime,
-    /// Its colour, the display computed from it by the scene's tone curve, and the depth where the peer
-    /// writes it.
+    /// The picture: its colour, the display computed from it by the scene's tone curve, and the depth if
+    /// the peer writes it.
     pub frame: Frame,
 }
 
 impl Peer {
-    /// Longer than any picture, load or mesh should take.
+    /// The time limit of an answer: longer than any picture, load or mesh should take.
     pub const PATIENCE: Duration = Duration::from_secs(300);
 
-    /// Starts a peer and hears what it is; `command` is written as for a POSIX shell.
+    /// Starts a peer and reads what it is; `command` is written as for a POSIX shell.
     ///
     /// # Errors
     /// Usage: no command. Failed: it cannot be started, ends, gives no valid answer, or none for
@@ -94,7 +94,7 @@ impl Peer {
         Self::start_with_patience(command, Self::PATIENCE)
     }
 
-    /// As [`Self::start`], with another limit of the time for each answer.
+    /// Starts a peer with another time limit for each answer; see [`Self::start`].
     ///
     /// # Errors
     /// As [`Self::start`].
@@ -117,7 +117,7 @@ impl Peer {
         })
     }
 
-    /// Such as `vtk`.
+    /// The peer's name, such as `vtk`.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -126,7 +126,7 @@ impl Peer {
         &self.version
     }
 
-    /// What it draws with.
+    /// The device that the peer draws with.
     pub fn device(&self) -> &str {
         &self.device
     }
@@ -156,7 +156,7 @@ impl Peer {
         self.duration(loaded.loaded)
     }
 
-    /// Has it prepare a scene of `volume`, which is the one loaded last, in one of its
+    /// Requests that the peer prepare a scene of `volume`, which is the one loaded last, in one of its
     /// [`Self::settings`].
     ///
     /// # Errors
@@ -168,7 +168,7 @@ impl Peer {
         let ready: Ready = ask(&mut self.process, Some(request), "prepare the scene")?;
         if !ready.supported {
             return Ok(Readiness::Unsupported {
-                why: ready.why.unwrap_or_else(|| "it does not say why".into()),
+                why: ready.why.unwrap_or_else(|| "it gives no reason".into()),
             });
         }
         Ok(Readiness::Ready(PeerScene {
@@ -292,7 +292,7 @@ impl Peer {
         if ms.is_finite() && ms >= 0.0 {
             return Ok(ms);
         }
-        Err((self.process).failed(&format!("says that something took {ms} ms")))
+        Err((self.process).failed(&format!("reports that something took {ms} ms")))
     }
 }
 
@@ -305,6 +305,6 @@ fn ask<T: DeserializeOwned>(
     let line = request.map(|request| request.line()).transpose()?;
     let answer = process.answer(line, doing)?;
     serde_json::from_value(serde_json::Value::Object(answer)).map_err(|cause| {
-        process.failed(&format!("was to {doing} and gave no such answer: {cause}"))
+        process.failed(&format!("was to {doing} and gave another answer: {cause}"))
     })
 }

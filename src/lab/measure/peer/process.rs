@@ -13,15 +13,15 @@ use crate::error::{Error, Result};
 
 /// The longest line of a peer that is read.
 const LONGEST_LINE_BYTES: u64 = 1 << 16;
-/// How long a peer may take to end once it is asked to, or has closed its output.
+/// How long a peer may take to end once it is requested to, or has closed its output.
 const FAREWELL: Duration = Duration::from_secs(2);
-/// As much of a peer's words as an error quotes.
+/// The most characters of a peer's output that an error quotes.
 const QUOTED_CHARS: usize = 200;
 
 /// A running peer. Threads of its own read and write, so that neither a silent peer nor one that
 /// does not listen can hold up the caller.
 pub(super) struct Process {
-    /// What errors call it.
+    /// The peer's name in error messages.
     name: String,
     child: Child,
     /// `None` once nothing more is to be said.
@@ -42,7 +42,7 @@ impl Process {
         let words = shlex::split(command).filter(|words| !words.is_empty());
         let Some(words) = words else {
             return Err(Error::usage(format!(
-                "the peer '{command}' is no command: give a program and its arguments, quoted as in a shell"
+                "the peer '{command}' is not a command: give a program and its arguments, quoted as in a shell"
             )));
         };
         let name = format!("the peer '{command}'");
@@ -69,7 +69,7 @@ impl Process {
         })
     }
 
-    /// What errors call it from now on.
+    /// Changes the peer's name in error messages.
     pub fn rename(&mut self, name: String) {
         self.name = name;
     }
@@ -85,7 +85,7 @@ impl Process {
     /// # Errors
     /// It ends, stays silent longer than it may, or says anything but one JSON object on a line:
     /// then it is stopped, and every later answer is the same error. It answers `{"error": why}`:
-    /// then it may be asked again.
+    /// then another request may be sent.
     pub fn answer(&mut self, request: Option<String>, doing: &str) -> Result<Map<String, Value>> {
         if let Some(error) = &self.over {
             return Err(error.clone());
@@ -110,12 +110,14 @@ impl Process {
         if let Some(request) = request {
             match self.replies.try_recv() {
                 Ok(line) => {
-                    return Err(self.failed(&format!("said '{}' unasked", quotable(&line))));
+                    return Err(
+                        self.failed(&format!("sent '{}' without a request", quotable(&line)))
+                    );
                 }
                 Err(TryRecvError::Disconnected) => return Err(self.ended(doing)),
                 Err(TryRecvError::Empty) => {}
             }
-            // A writer that is gone has met a closed pipe: the answer says so.
+            // A writer that has ended has found a closed pipe: the answer says so.
             if let Some(requests) = &self.requests {
                 let _ = requests.send(request);
             }
@@ -132,13 +134,13 @@ impl Process {
         };
         serde_json::from_str(&line).map_err(|_| {
             self.failed(&format!(
-                "was to {doing} and said '{}', which is no JSON object",
+                "was to {doing} and answered '{}', which is not a JSON object",
                 quotable(&line)
             ))
         })
     }
 
-    /// That it closed its output: how it ended, and what it said last.
+    /// The error of a peer that closed its output: how it ended, and its last message.
     fn ended(&mut self, doing: &str) -> Error {
         let how = match self.wait(FAREWELL) {
             Some(status) => format!("ended ({status})"),
@@ -151,7 +153,7 @@ impl Process {
         self.failed(&format!("{how} where it was to {doing}{last}"))
     }
 
-    /// Its exit status, if it ends within `time`.
+    /// Waits for the peer's exit status, for `time` at most.
     fn wait(&mut self, time: Duration) -> Option<std::process::ExitStatus> {
         let start = Instant::now();
         loop {
@@ -163,17 +165,17 @@ impl Process {
         }
     }
 
-    /// Ends it now.
+    /// Ends the peer now.
     fn stop(&mut self) {
         self.requests = None;
-        // It may have ended by itself, which is as good.
+        // It may have ended already, which is as good.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
 impl Drop for Process {
-    /// Its input ends; a peer that does not leave then is made to.
+    /// Closes the peer's input; a peer that does not end then is killed.
     fn drop(&mut self) {
         self.requests = None;
         if self.over.is_none() {
@@ -183,7 +185,7 @@ impl Drop for Process {
     }
 }
 
-/// Writes lines until there are no more, or nobody reads them.
+/// Writes lines until there are no more, or the reader has closed its end.
 fn spawn_writer(mut stdin: ChildStdin) -> Sender<String> {
     let (sender, lines) = mpsc::channel::<String>();
     thread::spawn(move || {
@@ -199,7 +201,7 @@ fn spawn_writer(mut stdin: ChildStdin) -> Sender<String> {
     sender
 }
 
-/// Reads lines until the output ends, a line is too long, or nobody wants them. What is no UTF-8
+/// Reads lines until the output ends, a line is too long, or the receiver is dropped. What is not UTF-8
 /// is replaced.
 fn spawn_reader(stdout: ChildStdout) -> Receiver<String> {
     // A peer that talks without end is held up by the pipe, not by the memory.
@@ -235,19 +237,19 @@ struct Complaints {
 impl Complaints {
     fn of(stderr: ChildStderr) -> Self {
         let last = Arc::new(Mutex::new(None));
-        let kept = Arc::clone(&last);
+        let shared = Arc::clone(&last);
         let reader = thread::spawn(move || {
             let mut lines = BufReader::new(stderr);
             while let Some(line) = next_line(&mut lines) {
                 if !line.is_empty() {
-                    *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some(line);
+                    *shared.lock().unwrap_or_else(PoisonError::into_inner) = Some(line);
                 }
             }
         });
         Self { last, reader }
     }
 
-    /// Of a process that has ended: its own children may still hold the pipe.
+    /// The last line of a process that has ended: its own children may still hold the pipe.
     fn last(&self) -> Option<String> {
         let start = Instant::now();
         while !self.reader.is_finished() && start.elapsed() < FAREWELL {

@@ -30,7 +30,7 @@ impl Request {
     }
 }
 
-/// Voxels without header, x fastest, in the machine's byte order.
+/// The voxels' file, without header, x fastest, in the machine's byte order.
 #[derive(Serialize)]
 pub(super) struct VolumeFile {
     pub file: String,
@@ -41,7 +41,7 @@ pub(super) struct VolumeFile {
     pub origin: [f64; 3],
     /// The world directions of the axes x, y, z: unit vectors.
     pub direction: [[f64; 3]; 3],
-    /// Of the voxels.
+    /// Minimum and maximum of the voxels.
     pub range: [f64; 2],
 }
 
@@ -65,7 +65,7 @@ impl VolumeFile {
 /// A scene whose values are those of the voxels as stored; lengths in mm, colours in linear light.
 #[derive(Serialize)]
 pub(super) struct SceneRequest {
-    /// What the scene is called when it is to be rendered.
+    /// The number by which the scene is rendered.
     id: u64,
     setting: String,
     mode: &'static str,
@@ -227,13 +227,14 @@ impl PhongRequest {
 #[derive(Serialize)]
 pub(super) struct RenderRequest {
     pub id: u64,
-    /// In place of the scene's; of pictures that are only timed.
+    /// The camera in place of the scene's, for pictures that are only timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraRequest>,
     /// R, G, B, A: linear light, premultiplied, without background.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
-    /// mm from the eye along the ray, from the eye plane in orthographic projection; +∞: none.
+    /// The file of the depth plane: mm from the eye along the ray, from the eye plane in orthographic
+    /// projection; +∞: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<String>,
 }
@@ -302,24 +303,24 @@ pub(super) struct OfferedSetting {
 
 #[derive(Deserialize)]
 pub(super) struct Loaded {
-    /// ms.
+    /// Time to load the volume, ms.
     pub loaded: f64,
 }
 
-/// That the scenes are forgotten.
+/// The answer that the scenes are forgotten.
 #[derive(Deserialize)]
 pub(super) struct Forgotten {}
 
 #[derive(Deserialize)]
 pub(super) struct Ready {
     pub supported: bool,
-    /// ms.
+    /// Time to prepare the scene, ms.
     #[serde(default)]
     pub ready: f64,
     /// Why it is not supported.
     #[serde(default, deserialize_with = "optional_line")]
     pub why: Option<String>,
-    /// In what its picture differs from the scene's.
+    /// How its picture differs from the scene's.
     #[serde(default, deserialize_with = "optional_line")]
     pub note: Option<String>,
 }

@@ -49,7 +49,7 @@ class Scatter {
       svg('svg', { viewBox: '-8 -8 16 16', class: 'point best', 'aria-hidden': true }, this.shape(group)), group));
     if (this.points.some(({ onFront }) => onFront)) {
       items.push(element('li', {}, svg('svg', { viewBox: '0 0 16 16', 'aria-hidden': true },
-        svg('path', { class: 'front', d: 'M1 3H8V12H15' })), 'Pareto front (filled): nothing less wrong is as fast, times within 10 % counting as equal'));
+        svg('path', { class: 'front', d: 'M1 3H8V12H15' })), 'Pareto front (filled): nothing more accurate is as fast, times within 10 % counting as equal'));
     }
     const legend = element('ul', { class: 'legend' }, ...items);
     if (!this.leftOut) return [legend];

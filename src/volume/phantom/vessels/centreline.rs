@@ -5,12 +5,15 @@ use rand_pcg::Pcg64;
 
 use super::targets::uniform_box;
 
-/// What a centreline must join.
+/// The ends that a centreline must join.
 pub(super) struct Span {
+    /// The start, mm from the volume's centre.
     pub start_mm: DVec3,
+    /// The end, mm from the volume's centre.
     pub end_mm: DVec3,
-    /// Unit vectors; an open end leaves in the direction it likes.
+    /// The unit tangent at the start.
     pub start_direction: DVec3,
+    /// The unit tangent at the end; an open end leaves in the direction it likes.
     pub end_direction: Option<DVec3>,
     /// The line stays in the box of these half edges; start and end lie in it.
     pub half_mm: DVec3,
@@ -19,8 +22,9 @@ pub(super) struct Span {
 }
 
 pub(super) struct Centreline {
-    /// From start to end, exactly.
+    /// The points from start to end, both exact, mm.
     pub points_mm: Vec<DVec3>,
+    /// The unit tangent at the end.
     pub end_direction: DVec3,
 }
 

@@ -1,8 +1,8 @@
 //! The tree as voxels: each voxel takes the share of it that the nearest vessel covers.
 //!
-//! The mid-value isosurface of the trilinear field then runs within 0.3 voxel of the tube's wall
+//! The mid-value isosurface of the trilinear field then runs within 0.3 voxel of the tube's surface
 //! where its radius is a voxel or more (measured: 0.12 voxel rms at 128³, on the inner side, for
-//! the wall is curved); finer vessels do not reach the middle value everywhere, as in a scanner.
+//! the surface is curved); finer vessels do not reach the middle value everywhere, as in a scanner.
 //!
 //! Only the voxels near a vessel are visited, so the time goes with the vessels' volume.
 
@@ -48,7 +48,7 @@ struct Piece {
 }
 
 impl Piece {
-    /// From the piece's nearest point to `p_mm`.
+    /// The vector from the piece's nearest point to `p_mm`.
     fn offset(&self, p_mm: DVec3) -> DVec3 {
         let q = p_mm - self.from_mm;
         let length_squared = self.along_mm.length_squared();
@@ -70,23 +70,23 @@ fn footprint_mm(spacing_mm: DVec3, offset_mm: DVec3) -> f64 {
 
 /// The first and last index of the voxels along each axis that the piece may touch; `None` where
 /// it touches none.
-fn reach(spec: &PhantomSpec, piece: &Piece) -> Option<[(usize, usize); 3]> {
+fn bounds(spec: &PhantomSpec, piece: &Piece) -> Option<[(usize, usize); 3]> {
     let pad_mm = piece.radius_mm + spec.spacing_mm.max_element() / PI.sqrt();
     let to_mm = piece.from_mm + piece.along_mm;
     let centre = spec.centre_index();
     let lo = (piece.from_mm.min(to_mm) - pad_mm) / spec.spacing_mm + centre;
     let hi = (piece.from_mm.max(to_mm) + pad_mm) / spec.spacing_mm + centre;
     let n = spec.dims.usize();
-    let mut reach = [(0, 0); 3];
-    for (axis, reach) in reach.iter_mut().enumerate() {
+    let mut bounds = [(0, 0); 3];
+    for (axis, bounds) in bounds.iter_mut().enumerate() {
         let last = (n[axis] - 1) as f64;
         let (lo, hi) = (lo[axis].ceil().max(0.0), hi[axis].floor().min(last));
         if lo > hi {
             return None;
         }
-        *reach = (lo as usize, hi as usize);
+        *bounds = (lo as usize, hi as usize);
     }
-    Some(reach)
+    Some(bounds)
 }
 
 /// The voxels, and the field in words.
@@ -104,11 +104,11 @@ pub(in super::super) fn draw(spec: &PhantomSpec, tree: &VesselTree) -> Result<(V
                 }
             })
         })
-        .filter_map(|piece| reach(spec, &piece).map(|reach| (piece, reach)))
+        .filter_map(|piece| bounds(spec, &piece).map(|bounds| (piece, bounds)))
         .collect();
     let voxels = with_type!(spec.voxel_type, T => draw_type::<T>(spec, &pieces))?;
-    let truth = "the field is the share of the voxel's cross-section, taken as a disc of equal area, that lies inside the tube around the nearest centreline".into();
-    Ok((voxels, truth))
+    let definition = "the field is the share of the voxel's cross-section, taken as a disc of equal area, that lies inside the tube around the nearest centreline".into();
+    Ok((voxels, definition))
 }
 
 fn draw_type<T: Stored>(
@@ -176,10 +176,11 @@ mod tests {
         for radius in [0.2, 0.5, a, 1.0, 5.0] {
             for step in 0..12 {
                 let distance = f64::from(step) / 10.0 * (radius + a);
-                let (exact, truth) = (coverage(distance, radius, a), counted(distance, radius, a));
+                let (exact, definition) =
+                    (coverage(distance, radius, a), counted(distance, radius, a));
                 assert!(
-                    (exact - truth).abs() < 3e-3,
-                    "{distance} {radius}: {exact} {truth}"
+                    (exact - definition).abs() < 3e-3,
+                    "{distance} {radius}: {exact} {definition}"
                 );
             }
         }

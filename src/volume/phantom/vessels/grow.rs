@@ -57,7 +57,7 @@ pub(in super::super) fn grow(spec: &PhantomSpec) -> Result<VesselTree> {
     let voxel_mm = spec.spacing_mm.min_element();
     let mut random = Pcg64::seed_from_u64(spec.seed);
 
-    // Centrelines keep to this box, so that the vessels' walls keep inside the volume.
+    // Centrelines keep to this box, so that the vessels' surfaces stay inside the volume.
     let domain_mm = (spec.lengths_mm() - spec.spacing_mm) / 2.0;
     let margin_mm = DVec3::splat(root_mm) + 1.5 * spec.spacing_mm;
     let half_mm = (domain_mm - margin_mm).max(domain_mm * 0.25);
@@ -102,7 +102,7 @@ struct Grower {
     tip_mm: f64,
     voxel_mm: f64,
     half_mm: DVec3,
-    /// Those that have no segment yet.
+    /// The buds, which have no segment yet.
     buds: Vec<Bud>,
     segments: Vec<VesselSegment>,
 }
@@ -243,7 +243,7 @@ fn split(bud: &Bud, served: &mut [Target], random: &mut Pcg64) -> usize {
 }
 
 /// Where three straight vessels of radii r0, r1, r2 to `start` and to the branches' centroids have
-/// the least volume: the minimum of Σ r² · distance, by Weiszfeld's iteration. Kept some way off
+/// the smallest volume: the minimum of Σ r² · distance, by Weiszfeld's iteration. It stays at a distance from
 /// the start, since a sharp fan of branches would pull it all the way back.
 fn branching_point(start_mm: DVec3, toward: [DVec3; 2], [r0, r1, r2]: [f64; 3]) -> DVec3 {
     const MIN_SHARE: f64 = 0.35;
@@ -260,8 +260,8 @@ fn branching_point(start_mm: DVec3, toward: [DVec3; 2], [r0, r1, r2]: [f64; 3]) 
         p = sum / weight;
     }
     let middle = (toward[0] * r1 * r1 + toward[1] * r2 * r2) / (r1 * r1 + r2 * r2);
-    let least = MIN_SHARE * middle.distance(start_mm);
-    if p.distance(start_mm) < least {
+    let min_mm = MIN_SHARE * middle.distance(start_mm);
+    if p.distance(start_mm) < min_mm {
         start_mm + (middle - start_mm) * MIN_SHARE
     } else {
         p

@@ -8,7 +8,9 @@ use rand_pcg::Pcg64;
 /// tip. By Murray's law a vessel's radius is the cube root of the flow it carries.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
+    /// The tip's place, mm from the volume's centre.
     pub p_mm: DVec3,
+    /// The flow that the tip takes, in flows of the finest tip.
     pub flow: f64,
 }
 
@@ -64,7 +66,7 @@ fn in_rounded_box(random: &mut Pcg64) -> DVec3 {
     DVec3::ZERO
 }
 
-/// Uniform in [-1, 1]³.
+/// A uniformly distributed point in [-1, 1]³.
 pub(super) fn uniform_box(random: &mut Pcg64) -> DVec3 {
     let mut side = || random.random::<f64>() * 2.0 - 1.0;
     let (x, y, z) = (side(), side(), side());

@@ -10,26 +10,30 @@ use serde::Serialize;
 
 use crate::extent::Dims;
 
-/// In `r0^n = r1^n + r2^n`.
+/// The exponent n of `r0^n = r1^n + r2^n`.
 pub const MURRAY_EXPONENT: f64 = 3.0;
 
 /// A vessel from one branching to the next (or to a tip). World space, mm; the radius is the same
 /// all along.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VesselSegment {
-    /// Its place in [`VesselTree::segments`].
+    /// The segment's index in [`VesselTree::segments`].
     pub id: usize,
     /// The segment at whose end this one starts; the root has none.
     pub parent: Option<usize>,
     /// Branchings between the root and here.
     pub generation: u32,
+    /// The radius, mm.
     pub radius_mm: f64,
-    /// In voxels of the smallest spacing.
+    /// The radius, in voxels of the smallest spacing.
     pub radius_voxels: f64,
+    /// The start of the centreline.
     pub start_mm: [f64; 3],
+    /// The end of the centreline.
     pub end_mm: [f64; 3],
-    /// The centreline's unit tangents at both ends; at a branching they obey Murray's angles.
+    /// The centreline's unit tangent at the start; at a branching it obeys Murray's angles.
     pub start_direction: [f64; 3],
+    /// The centreline's unit tangent at the end; at a branching it obeys Murray's angles.
     pub end_direction: [f64; 3],
     /// The centreline: a polyline from start to end, both included. What the voxels show is the
     /// tube around exactly this polyline.
@@ -39,10 +43,15 @@ pub struct VesselSegment {
 /// All segments, a parent before its branches. Each has no branches or two.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VesselTree {
+    /// The number of voxels along each axis.
     pub dims: Dims,
+    /// The distance of voxel centres along each axis, mm.
     pub spacing_mm: [f64; 3],
+    /// The seed that the tree was grown from.
     pub seed: u64,
+    /// The exponent of Murray's law ([`MURRAY_EXPONENT`]).
     pub murray_exponent: f64,
+    /// The segments; a segment's `id` is its index.
     pub segments: Vec<VesselSegment>,
 }
 
@@ -67,10 +76,10 @@ mod tests {
         ends.iter().map(|&(end, r)| r * r * length(end)).sum()
     }
 
-    /// Murray's angles are where the volume is least: moving the branching any way adds to it.
+    /// Murray's angles are where the volume is smallest: moving the branching any way adds to it.
     #[test]
-    fn branching_angles_make_the_volume_least() {
-        let least = |cosines: [f64; 2], radii: [f64; 3]| {
+    fn branching_angles_minimise_the_volume() {
+        let is_minimal = |cosines: [f64; 2], radii: [f64; 3]| {
             let sine = |c: f64| (1.0 - c * c).sqrt();
             let ends = [
                 ([-1.0, 0.0], radii[0]),
@@ -86,9 +95,9 @@ mod tests {
         for r1 in [0.3_f64, 0.6, 0.8, 0.95] {
             let r2 = (1.0 - r1.powi(3)).cbrt();
             let cosines = branching_cosines(1.0, r1, r2);
-            assert!(least(cosines, [1.0, r1, r2]), "r1 = {r1}");
+            assert!(is_minimal(cosines, [1.0, r1, r2]), "r1 = {r1}");
             let wider = cosines.map(|c| (c.acos() + 0.05).cos());
-            assert!(!least(wider, [1.0, r1, r2]), "r1 = {r1}, wrong angles");
+            assert!(!is_minimal(wider, [1.0, r1, r2]), "r1 = {r1}, wrong angles");
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::scene::{Quadrature, Sampling, SamplingMethod, Scene};
 pub struct Candidate {
     pub kind: PictureKind,
     pub setting: String,
-    /// From the middle of the camera's path.
+    /// The scene, from the middle of the camera's path.
     pub scene: Scene,
 }
 

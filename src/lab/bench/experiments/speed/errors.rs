@@ -17,7 +17,7 @@ const SEED: u64 = 5;
 /// The error of a picture; `None` where it has no such plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PictureError {
-    /// By the mode's first metric of [`RankingMetric::of_mode`].
+    /// The error by the mode's first metric of [`RankingMetric::of_mode`].
     pub first: Option<f64>,
     pub color_rmse: Option<f64>,
     pub color_max: Option<f64>,

@@ -19,7 +19,7 @@ pub fn of_rows(place: &str, rows: &[TimedRow]) -> Vec<String> {
         .collect();
     if !rates.is_empty() {
         findings.push(format!(
-            "{place}: sampling alone takes so many million samples a second: {}",
+            "{place}: sampling alone, million samples a second: {}",
             rates.join(", ")
         ));
     }

@@ -22,7 +22,7 @@ fn rules(preset: Preset) -> &'static [&'static str] {
         Preset::Usual | Preset::Full => &["preintegrated", "midpoint", "simpson"],
     }
 }
-/// Voxels.
+/// The steps that are tried, in voxels.
 const STEPS: [f64; 7] = [1.0, 0.75, 0.5, 0.33, 0.25, 0.16, 0.12];
 /// The rule that is taken where none of them does: it has no step.
 const SUREST: &str = "adaptive:0.001";
@@ -32,7 +32,7 @@ const SUREST: &str = "adaptive:0.001";
 pub struct Medium {
     shaded: bool,
     quadrature: String,
-    /// Without meaning where the rule takes no steps.
+    /// The step in voxels, without meaning if the rule takes no steps.
     step_voxels: f64,
     /// The error in the pixels that were checked when it was chosen.
     color_max: f64,
@@ -68,9 +68,9 @@ impl Medium {
     /// A sentence for the findings.
     pub fn finding(&self, volume: &str) -> String {
         let why = match self.color_max <= BOUND {
-            true => "the fastest of those tried that keep an error of 0.784 % (2 of 255)",
+            true => "the fastest of those tried that stay within an error of 0.784 % (2 of 255)",
             false => {
-                "none of those tried keeps an error of 0.784 % (2 of 255), this one comes nearest"
+                "none of those tried stays within an error of 0.784 % (2 of 255), this one comes nearest"
             }
         };
         format!(
@@ -87,7 +87,7 @@ impl Medium {
 /// A setting that was tried.
 struct Tried {
     medium: Medium,
-    /// A frame, where the bound is kept.
+    /// The time of a frame, ms, if it is within the bound.
     ms: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::scene::{
     Reflectance, Rgb, Sampling, Scene, Tone, TransferFunction, Window,
 };
 
-/// What is seen; settings that show the same have one reference and one baseline.
+/// The kind of picture; settings that show the same have one reference and one baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PictureKind {
     Surface,

@@ -54,8 +54,7 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Of frames that show the same, ours to the peer's: the ratios of processor time and of wall time,
-/// medians of each round's own.
+/// Our times divided by the peer's, for frames that show the same: medians of the ratio of each round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ratios {
     pub cpu: Option<f64>,

@@ -20,11 +20,11 @@ use crate::scene::{Sampling, SamplingMethod, Scene, StepVoxels, Storage};
 /// The times of one frame, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Taken {
-    /// From the camera set to pixels that the host can read.
+    /// The time from the camera set to pixels that the host can read, ms.
     pub frame_ms: f64,
-    /// Of all threads; unknown on some systems, and of some peers.
+    /// Processor time of all threads, ms; unknown on some systems, and for some peers.
     pub processor_ms: Option<f64>,
-    /// Of the pass that follows the rays, on the device's clock; unknown of peers.
+    /// Time of the pass that follows the rays, ms on the device's clock; unknown for peers.
     pub cast_ms: Option<f64>,
 }
 
@@ -42,15 +42,15 @@ pub enum Runner {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TimedRow {
     pub runner: Runner,
-    /// What is seen; sampling alone sees nothing.
+    /// The kind of picture; `None` for sampling alone.
     pub kind: Option<PictureKind>,
     pub setting: String,
     /// Samples taken, or cells visited, in a frame from the middle of the camera's path.
     pub samples: Option<u64>,
     pub error: Option<PictureError>,
-    /// In what a peer's picture differs otherwise.
+    /// How a peer's picture differs otherwise.
     pub note: Option<String>,
-    /// A round each.
+    /// The times, one a round.
     pub taken: Vec<Taken>,
 }
 
@@ -98,7 +98,8 @@ pub struct Lineup<'a> {
     pub peer: Option<&'a mut Peer>,
 }
 
-/// Between two frames the camera turns by so much: no two frames see the same cells in the same pixels.
+/// The angle by which the camera turns between two frames: no two frames see the same cells in the same
+/// pixels.
 pub const TURN_DEG: f64 = 1.7;
 
 /// The settings of a peer that are timed, the first that it has for a mode; else its first.
@@ -335,7 +336,7 @@ fn peer_row(
     Ok(Some((row, scene)))
 }
 
-/// As many frames as take the candidates about [`seconds`] each, on average.
+/// The number of frames that take the candidates about [`seconds`] each, on average.
 fn frames_of(preset: Preset, candidates: &[Candidate], renderer: &mut Renderer) -> Result<usize> {
     let mut round_ms = 0.0;
     for candidate in candidates {

@@ -1,4 +1,4 @@
-//! Built kernels are kept from run to run, and what is kept cannot spoil a picture.
+//! Built kernels are cached from run to run, and what is cached cannot spoil a picture.
 
 use crate::common;
 
@@ -23,7 +23,7 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// A folder with a volume, in which pictures are rendered with kernels kept in `kept`.
+/// A folder with a volume, in which pictures are rendered with kernels cached in `cached`.
 struct Place {
     folder: tempfile::TempDir,
     device: String,
@@ -57,7 +57,7 @@ impl Place {
             .arg(self.path("sphere.nrrd"))
             .arg("-o")
             .arg(&picture)
-            .env("ANGIORAY_KERNEL_CACHE", self.path("kept"));
+            .env("ANGIORAY_KERNEL_CACHE", self.path("cache"));
         if let Some(kernels) = kernels {
             command.env("ANGIORAY_KERNELS", kernels);
         }
@@ -76,7 +76,7 @@ impl Place {
             .arg(self.path("sphere.nrrd"))
             .arg("-o")
             .arg(self.path("picture.png"))
-            .env("ANGIORAY_KERNEL_CACHE", self.path("kept"));
+            .env("ANGIORAY_KERNEL_CACHE", self.path("cache"));
         command
     }
 
@@ -87,8 +87,8 @@ impl Place {
         fs::read(self.path("picture.png")).unwrap()
     }
 
-    fn kept(&self) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.path("kept")).unwrap();
+    fn cached(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.path("cache")).unwrap();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         paths
@@ -96,15 +96,15 @@ impl Place {
 }
 
 #[test]
-fn a_kept_kernel_is_the_one_that_runs() {
+fn a_cached_kernel_is_the_one_that_runs() {
     let Some(place) = Place::new() else { return };
     let own = place.render(None);
-    let kept = place.kept();
-    assert!(kept.len() >= 3, "{kept:?}");
+    let cached = place.cached();
+    assert!(cached.len() >= 3, "{cached:?}");
     assert_eq!(place.render(None), own);
-    assert_eq!(place.kept(), kept);
+    assert_eq!(place.cached(), cached);
 
-    // Kernels that draw something else are kept elsewhere.
+    // Kernels that draw something else are cached elsewhere.
     let others = place.path("kernels");
     copy_folder(
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("kernels"),
@@ -120,15 +120,15 @@ fn a_kept_kernel_is_the_one_that_runs() {
     fs::write(&file, broken).unwrap();
     let other = place.render(Some(&others));
     assert_ne!(other, own);
-    let new: Vec<PathBuf> = place.kept();
-    let new: Vec<&PathBuf> = new.iter().filter(|path| !kept.contains(path)).collect();
+    let new: Vec<PathBuf> = place.cached();
+    let new: Vec<&PathBuf> = new.iter().filter(|path| !cached.contains(path)).collect();
     let [new] = new[..] else {
         panic!("one kernel differs, and {new:?} are new")
     };
 
-    // Put in a kept kernel's place it is taken for that; a program without the kernel is built anew.
+    // Put in a cached kernel's place it is taken for that; a program without the kernel is built anew.
     let mut taken = 0;
-    for path in &kept {
+    for path in &cached {
         let right = fs::read(path).unwrap();
         fs::copy(new, path).unwrap();
         let picture = place.render(None);
@@ -147,7 +147,7 @@ fn a_kept_kernel_is_the_one_that_runs() {
 fn what_is_no_whole_kernel_is_built_anew() {
     let Some(place) = Place::new() else { return };
     let own = place.render(None);
-    let path = &place.kept()[0];
+    let path = &place.cached()[0];
     let right = fs::read(path).unwrap();
     let mut flipped = right.clone();
     *flipped.last_mut().unwrap() ^= 1;
@@ -159,7 +159,7 @@ fn what_is_no_whole_kernel_is_built_anew() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_told() {
+fn a_folder_that_cannot_be_made_is_reported() {
     let Some(place) = Place::new() else { return };
     let file = place.path("file");
     fs::write(&file, "").unwrap();
@@ -172,11 +172,11 @@ fn a_folder_that_cannot_be_made_is_told() {
         .env("ANGIORAY_KERNEL_CACHE", file.join("below"))
         .output()
         .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
+    let printed = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success());
     assert!(
-        told.contains("make the folder") && told.contains("'off'"),
-        "{told}"
+        printed.contains("make the folder") && printed.contains("'off'"),
+        "{printed}"
     );
     assert!(!place.path("picture.png").exists());
 }

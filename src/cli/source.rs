@@ -16,18 +16,18 @@ use crate::volume::{
 
 use super::terminal::note;
 
-/// A volume and what was learnt on the way.
+/// A volume and what was learnt while it was read.
 pub struct Loaded {
     pub volume: Volume,
     pub histogram: Histogram,
     pub subject: Subject,
-    /// In the file, before smoothing.
+    /// The number of NaN and ±Inf values in the file, before smoothing.
     pub non_finite: u64,
     pub read_ms: f64,
     pub smooth_ms: f64,
 }
 
-/// What has to be known before a volume is read.
+/// The volume's file and everything that must be known before it is read.
 pub struct Source {
     pub path: PathBuf,
     pub leaf: Leaf,
@@ -36,7 +36,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// What the options say of the volume's file, checked as far as can be without reading it.
+    /// The volume's file as the options describe it, checked as far as is possible without reading it.
     ///
     /// # Errors
     /// No volume named; a layout or leaf edge that makes no sense.
@@ -80,7 +80,7 @@ impl Source {
         Path::new(self.path.file_name().unwrap_or_default())
     }
 
-    /// Options of a scene as pictures store them, so that they render the same volume in the same way:
+    /// Options of a scene as pictures store them, so that they render the same volume alike:
     /// its path is as it was given, and the octree's leaf is there.
     #[must_use]
     pub fn stored(&self, mut options: SceneOptions) -> SceneOptions {

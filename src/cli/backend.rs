@@ -18,13 +18,13 @@ use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
-use super::load::{Source, ms_since};
 use super::progress::Bars;
+use super::source::{Source, ms_since};
 use super::stats::{DeviceStats, PassStats, Times};
 use super::terminal::note;
 
 group! {
-    /// What renders, and how it is used.
+    /// The options that choose the device and how it is used.
     #[command(next_help_heading = "Device")]
     pub struct DeviceOptions {
         /// An OpenCL device by its number, part of its name, cpu or gpu; or reference: the
@@ -48,18 +48,19 @@ impl DeviceOptions {
     /// Lays these flags over a scene file's options: what a device needs goes where the flag is the
     /// reference.
     pub fn over_file(self, file: Self) -> Self {
-        let kept = file.keeping(|option| has_needs(Group::Device, option, |need| self.meets(need)));
-        self.over(kept)
+        let remaining =
+            file.retaining(|option| has_needs(Group::Device, option, |need| self.meets(need)));
+        self.over(remaining)
     }
 
-    /// Whether the device named is one that has this.
+    /// Whether the named device meets this need.
     fn meets(&self, need: Need) -> bool {
         let is_reference = self.device.as_ref().is_some_and(DeviceName::is_reference);
         need != Need::OpenCl || !is_reference
     }
 }
 
-/// `--device`.
+/// The device's name, as given by `--device`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceName(String);
 
@@ -82,7 +83,7 @@ impl FromStr for DeviceName {
     }
 }
 
-/// `--work-group`: `WxH` work items.
+/// The size of a work group, as given by `--work-group`: `WxH` work items.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkGroup([usize; 2]);
 
@@ -109,7 +110,7 @@ impl FromStr for WorkGroup {
 
 readable!(DeviceName, WorkGroup, Lanes);
 
-pub enum Engine {
+pub enum Backend {
     Reference,
     Device {
         device: Box<Device>,
@@ -121,18 +122,18 @@ pub enum Engine {
 pub struct Rendered {
     pub frame: Frame,
     pub device: DeviceStats,
-    /// Without reading and encoding.
+    /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
-    /// Where gradients were precomputed.
+    /// The cost and error of the gradients, if they were precomputed.
     pub gradients: Option<GradientFigures>,
     pub device_bytes: u64,
-    /// From host to device.
+    /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
 }
 
-impl Engine {
-    /// What the options name: the reference, or a device.
+impl Backend {
+    /// Opens what the options name: the reference, or a device.
     ///
     /// # Errors
     /// Usage: work groups for the reference. No device of that name, or none at all.
@@ -163,7 +164,7 @@ impl Engine {
         }
     }
 
-    /// What renders, for the statistics.
+    /// The device, for the statistics.
     pub fn device(&self) -> DeviceStats {
         match self {
             Self::Reference => reference_stats(),
@@ -179,8 +180,7 @@ impl Engine {
         }
     }
 
-    /// What the device needs of the volume, besides the volume: nothing where the reference
-    /// renders.
+    /// Prepares what the device needs beside the volume itself; nothing for the reference.
     pub fn prepare(
         &self,
         volume: &Volume,
@@ -217,7 +217,7 @@ impl Engine {
     }
 }
 
-/// What an [`Engine`] made of a volume.
+/// What a [`Backend`] has prepared from a volume.
 pub enum Prepared {
     Nothing,
     Octree { octree: Octree, octree_ms: f64 },

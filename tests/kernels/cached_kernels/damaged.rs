@@ -43,12 +43,12 @@ fn the_driver_leaves_nothing_that_could_be_damaged_and_uses_nothing_that_is() {
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names.collect::<Vec<String>>()
     };
-    // What a process left that is no more.
+    // What a process left that has ended.
     let left = temporary.join("angioray-driver-0");
     fs::create_dir(&left).unwrap();
     fs::write(left.join("held"), "").unwrap();
     let own = place.rendered(&mut place.simple_command());
-    for kernels in ["kept", "elsewhere", "off"] {
+    for kernels in ["cache", "elsewhere", "off"] {
         let mut command = place.simple_command();
         let kernels = if kernels == "off" {
             kernels.into()
@@ -66,26 +66,26 @@ fn the_driver_leaves_nothing_that_could_be_damaged_and_uses_nothing_that_is() {
 }
 
 #[test]
-fn kept_kernels_may_be_damaged() {
+fn cached_kernels_may_be_damaged() {
     let Some(place) = Place::new() else { return };
     let render = || place.rendered(&mut place.simple_command());
     let own = render();
-    let kept = place.kept();
+    let cached = place.cached();
     for (name, how) in DAMAGES {
-        damage(&kept, how);
+        damage(&cached, how);
         assert_eq!(render(), own, "{name}");
-        assert_eq!(place.kept(), kept, "{name}");
+        assert_eq!(place.cached(), cached, "{name}");
     }
     // The control: whole they are taken as they are.
-    let whole: Vec<Vec<u8>> = kept.iter().map(|path| fs::read(path).unwrap()).collect();
+    let whole: Vec<Vec<u8>> = cached.iter().map(|path| fs::read(path).unwrap()).collect();
     assert_eq!(render(), own);
-    let after: Vec<Vec<u8>> = kept.iter().map(|path| fs::read(path).unwrap()).collect();
+    let after: Vec<Vec<u8>> = cached.iter().map(|path| fs::read(path).unwrap()).collect();
     assert!(whole == after);
 }
 
-/// A kept kernel that is whole, but whose code is none: as where another processor has this one's name.
-fn with_other_code(kept: &[u8]) -> Option<Vec<u8>> {
-    let binary = &kept[blake3::OUT_LEN..];
+/// A cached kernel that is complete, but whose code does not run: as where another processor has this one's name.
+fn with_other_code(cached: &[u8]) -> Option<Vec<u8>> {
+    let binary = &cached[blake3::OUT_LEN..];
     let library = binary.windows(4).position(|bytes| bytes == b"\x7fELF")?;
     let mut binary = binary.to_vec();
     // Of its program: what it is loaded by stays.
@@ -97,24 +97,24 @@ fn with_other_code(kept: &[u8]) -> Option<Vec<u8>> {
 
 #[cfg(target_arch = "x86_64")]
 #[test]
-fn a_kept_kernel_that_ends_the_process_says_so_and_is_removed() {
+fn a_cached_kernel_that_ends_the_process_says_so_and_is_removed() {
     let Some(place) = Place::new() else { return };
     let own = place.rendered(&mut place.simple_command());
     fs::remove_file(place.path("picture.png")).unwrap();
-    for path in place.kept() {
+    for path in place.cached() {
         let Some(other) = with_other_code(&fs::read(&path).unwrap()) else {
             return crate::common::skip("this driver's binaries hold no machine code");
         };
         fs::write(&path, other).unwrap();
     }
     let output = place.simple_command().output().unwrap();
-    let told = said(&output);
+    let printed = said(&output);
     assert_eq!(output.status.code(), Some(74), "{output:?}");
-    assert_eq!(told.matches("error: ").count(), 1, "{told}");
+    assert_eq!(printed.matches("error: ").count(), 1, "{printed}");
     for part in ["SIG", "the device", "the same command builds them again"] {
-        assert!(told.contains(part), "{told}");
+        assert!(printed.contains(part), "{printed}");
     }
-    assert!(place.kept().is_empty());
+    assert!(place.cached().is_empty());
     assert!(!place.path("picture.png").exists());
     assert_eq!(place.rendered(&mut place.simple_command()), own);
 }
@@ -126,11 +126,13 @@ fn what_is_no_file_in_a_kernels_place_is_not_waited_for() {
     let Some(place) = Place::new() else { return };
     let render = || place.rendered(&mut place.simple_command());
     let own = render();
-    let kept = place.kept();
-    let [pipe, socket, device, ..] = &kept[..] else {
-        panic!("{kept:?}")
+    let cached = place.cached();
+    let [pipe, socket, device, ..] = &cached[..] else {
+        panic!("{cached:?}")
     };
-    kept.iter().for_each(|path| fs::remove_file(path).unwrap());
+    cached
+        .iter()
+        .for_each(|path| fs::remove_file(path).unwrap());
     let mode = rustix::fs::Mode::RWXU;
     rustix::fs::mkfifoat(rustix::fs::CWD, pipe, mode).unwrap();
     let _listening = UnixListener::bind(socket).unwrap();
@@ -143,7 +145,7 @@ fn what_is_no_file_in_a_kernels_place_is_not_waited_for() {
             path.display()
         );
     }
-    // A folder stays, and nothing is kept there.
+    // A folder stays, and nothing is cached there.
     fs::remove_file(pipe).unwrap();
     fs::create_dir(pipe).unwrap();
     assert_eq!(render(), own);

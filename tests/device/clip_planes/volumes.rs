@@ -65,18 +65,18 @@ fn planes_keep_their_share_of_a_uniform_medium() {
     let pixel_mm2 = (HEIGHT_MM / f64::from(SIZE_PX)).powi(2);
     for engine in engines() {
         let frames = engine.frames(&volume, &scenes);
-        let kept: Vec<f64> = (frames.iter())
+        let measured: Vec<f64> = (frames.iter())
             .map(|frame| lengths_mm(frame).sum::<f64>() * pixel_mm2)
             .collect();
-        for ((planes, truth), kept) in sets.iter().zip(&kept) {
+        for ((planes, reference), measured) in sets.iter().zip(&measured) {
             assert!(
-                (kept - truth).abs() <= 0.002 * 512.0,
-                "{}: {planes:?} keep {kept} mm³ of {truth}",
+                (measured - reference).abs() <= 0.002 * 512.0,
+                "{}: {planes:?} keep {measured} mm³ of {reference}",
                 engine.name
             );
         }
         // The control: no set keeps what another does.
-        let mut sorted = kept.clone();
+        let mut sorted = measured.clone();
         sorted.sort_by(f64::total_cmp);
         assert!(
             sorted

@@ -1,5 +1,5 @@
-//! Files that can be made again, kept so that they need not be: each under a hash of everything that it
-//! depends on, so that nothing stale is ever taken for the thing itself.
+//! An on-disk cache: files that can be made again, each under a hash of everything that it depends on, so
+//! that a stale file is never taken for a current one. Files that have not been used for a while expire.
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -11,31 +11,31 @@ use crate::error::{Error, Result};
 use crate::input;
 use crate::output::write_atomically;
 
-/// Files that nobody asked for in so long are removed.
-const KEPT: Duration = Duration::from_secs(30 * 24 * 3600);
+/// The age at which a file that has not been used is removed.
+const EXPIRY: Duration = Duration::from_secs(30 * 24 * 3600);
 
-/// A folder of kept files of one kind.
+/// A folder of cached files of one kind.
 #[derive(Debug, Clone)]
-pub struct Kept {
+pub struct CacheFolder {
     folder: PathBuf,
-    /// Of the kind's file names.
+    /// The extension of this kind's file names.
     extension: &'static str,
 }
 
-impl Kept {
-    /// The folder is made where there is none. Files of this kind that nobody asked for in thirty days,
-    /// such as those of programs that are no more, are removed from it, as far as they can be.
+impl CacheFolder {
+    /// Opens the folder, and creates it if it does not exist. Files of this kind that have not been used for
+    /// thirty days, such as those of older versions, are removed, as far as they can be.
     ///
     /// # Errors
-    /// The folder cannot be made.
+    /// The folder cannot be created.
     pub fn in_folder(folder: &Path, extension: &'static str) -> Result<Self> {
         std::fs::create_dir_all(folder)
             .map_err(|cause| Error::writing(folder, "make the folder", &cause))?;
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()) {
-            let asked = || path.metadata().ok()?.modified().ok()?.elapsed().ok();
+            let age = || path.metadata().ok()?.modified().ok()?.elapsed().ok();
             let is_ours = path.extension().is_some_and(|name| name == extension);
-            if is_ours && asked().is_some_and(|age| age > KEPT) {
+            if is_ours && age().is_some_and(|age| age > EXPIRY) {
                 let _ = std::fs::remove_file(path);
             }
         }
@@ -45,7 +45,7 @@ impl Kept {
         })
     }
 
-    /// Where the file is kept that depends on what was hashed.
+    /// The path of the file that depends on what was hashed.
     pub fn path(&self, hasher: &blake3::Hasher) -> PathBuf {
         let mut name = String::new();
         for byte in &hasher.finalize().as_bytes()[..16] {
@@ -55,8 +55,8 @@ impl Kept {
     }
 }
 
-/// Opens a kept file for reading. Only a regular file is one: a pipe, a device or a folder in its place
-/// is never waited for.
+/// Opens a cached file for reading. It must be a regular file: a pipe, a device or a folder in its place is
+/// refused and never waited for.
 ///
 /// # Errors
 /// There is no such file, or it cannot be read.
@@ -67,23 +67,23 @@ pub fn open(path: &Path) -> io::Result<File> {
     } else {
         Err(io::Error::new(
             io::ErrorKind::InvalidData,
-            "this is no regular file",
+            "not a regular file",
         ))
     }
 }
 
-/// The bytes of a kept file, as [`open`] opens it; of a longer one the first `most`.
+/// The first `max_bytes` bytes of a cached file, or all if it is shorter; see [`open`].
 ///
 /// # Errors
 /// Those of [`open`]; the disk failed.
-pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open(path)?.take(most).read_to_end(&mut bytes)?;
+    open(path)?.take(max_bytes).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Writes a kept file as [`write_atomically`] does, in place of whatever has its name; a folder stays, so
-/// that nothing is kept there.
+/// Writes a cached file as [`write_atomically`] does, in place of whatever has its name; a folder stays, and
+/// then nothing is cached.
 ///
 /// # Errors
 /// Those of [`write_atomically`].
@@ -96,11 +96,11 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>)
     write_atomically(path, fill)
 }
 
-/// That files can be made in a folder that is there.
+/// Checks that files can be created in an existing folder.
 ///
 /// # Errors
-/// They cannot, by its permissions or its file system's.
-pub fn check_takes_files(folder: &Path) -> Result<()> {
+/// The folder's permissions or its file system do not allow it.
+pub fn check_writable(folder: &Path) -> Result<()> {
     #[cfg(unix)]
     {
         use rustix::fs::{Access, access};
@@ -112,14 +112,14 @@ pub fn check_takes_files(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Says of a kept file that it was asked for. Where that cannot be said it is made again one day.
-pub fn asked_for(path: &Path) {
+/// Marks a cached file as used now, so that it does not expire. If that fails, it is made again one day.
+pub fn mark_used(path: &Path) {
     let file = std::fs::File::options().append(true).open(path);
     let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
 }
 
-/// Where programs of this system keep what can be made again (XDG Base Directory Specification).
-pub fn users_folder() -> Option<PathBuf> {
+/// This program's folder in the user's cache folder (XDG Base Directory Specification), if there is one.
+pub fn user_folder() -> Option<PathBuf> {
     let named = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from);
     let named = named.filter(|path| path.is_absolute());
     let home = || Some(std::env::home_dir()?.join(".cache"));
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_of_a_kind_that_nobody_asked_for_are_removed() {
+    fn unused_files_expire() {
         let folder = tempfile::tempdir().unwrap();
         let put = |name: &str, age: Duration| {
             let path = folder.path().join(name);
@@ -141,13 +141,13 @@ mod tests {
             file.set_modified(SystemTime::now() - age).unwrap();
             path
         };
-        let old = put("a.thing", KEPT * 2);
-        let asked = put("b.thing", KEPT * 2);
-        let young = put("c.thing", KEPT / 2);
-        let others = put("d.other", KEPT * 2);
-        asked_for(&asked);
-        Kept::in_folder(folder.path(), "thing").unwrap();
-        let there = [&old, &asked, &young, &others].map(|path| path.exists());
+        let old = put("a.thing", EXPIRY * 2);
+        let used = put("b.thing", EXPIRY * 2);
+        let young = put("c.thing", EXPIRY / 2);
+        let others = put("d.other", EXPIRY * 2);
+        mark_used(&used);
+        CacheFolder::in_folder(folder.path(), "thing").unwrap();
+        let there = [&old, &used, &young, &others].map(|path| path.exists());
         assert_eq!(there, [false, true, true, true]);
     }
 
@@ -184,10 +184,10 @@ mod tests {
     }
 
     #[test]
-    fn what_depends_on_something_else_is_kept_elsewhere() {
+    fn what_depends_on_something_else_has_another_path() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = Kept::in_folder(folder.path(), "thing").unwrap();
-        let of = |text: &str| kept.path(blake3::Hasher::new().update(text.as_bytes()));
+        let cache = CacheFolder::in_folder(folder.path(), "thing").unwrap();
+        let of = |text: &str| cache.path(blake3::Hasher::new().update(text.as_bytes()));
         assert_eq!(of("one"), of("one"));
         assert_ne!(of("one"), of("two"));
     }

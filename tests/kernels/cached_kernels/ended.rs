@@ -19,7 +19,7 @@ fn links() -> bool {
     common::device().is_some_and(|device| device.info().platform.contains("Portable Computing"))
 }
 
-/// A folder of programs with `ld` as this script; without one where there is none.
+/// A folder of programs with `ld` as this script; without one if there is none.
 fn programs(place: &Place, ld: Option<&str>) -> std::path::PathBuf {
     let folder = place.path("programs");
     let _ = fs::remove_dir_all(&folder);
@@ -46,22 +46,23 @@ fn a_driver_that_ends_while_it_builds_is_reported() {
         (Some("echo out of luck >&2; exit 3"), "out of luck"),
     ] {
         let output = without(&mut place.simple_command(), &programs(&place, ld));
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(74), "{told}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(74), "{printed}");
         assert_eq!(
-            told.lines()
+            printed
+                .lines()
                 .filter(|line| line.starts_with("error: "))
                 .count(),
             1,
-            "{told}"
+            "{printed}"
         );
         for part in ["the driver of '", "kernels/pass/", "SIGABRT", words] {
-            assert!(told.contains(part), "{part}: {told}");
+            assert!(printed.contains(part), "{part}: {printed}");
         }
         assert!(!place.path("picture.png").exists());
-        assert_eq!(place.kept().len(), 0);
+        assert_eq!(place.cached().len(), 0);
     }
-    // The control: with the linker all goes well. And what is kept needs none: nothing is left for the
+    // The control: with the linker all goes well. And what is cached needs none: nothing is left for the
     // first launch to build.
     let own = place.rendered(&mut place.simple_command());
     let output = without(&mut place.simple_command(), &programs(&place, None));
@@ -71,7 +72,7 @@ fn a_driver_that_ends_while_it_builds_is_reported() {
 
 #[cfg(unix)]
 #[test]
-fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
+fn building_reports_progress_and_ends_on_request() {
     let Some(place) = Place::new() else { return };
     if !links() {
         return common::skip("this driver needs no 'ld'");
@@ -91,16 +92,19 @@ fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
         .arg(place.path("sphere.nrrd"))
         .arg("-o")
         .arg(place.path("frames/%d.png"))
-        .env("ANGIORAY_KERNEL_CACHE", place.path("kept"))
+        .env("ANGIORAY_KERNEL_CACHE", place.path("cache"))
         .env("PATH", path)
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut printed = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
     while !line.contains("building kernels 0 of ") {
         line.clear();
-        assert!(told.read_line(&mut line).unwrap() > 0, "it ended by itself");
+        assert!(
+            printed.read_line(&mut line).unwrap() > 0,
+            "it ended by itself"
+        );
     }
     while !place.path("linkers").exists() {
         assert_eq!(child.try_wait().unwrap(), None, "it ended by itself");
@@ -111,13 +115,13 @@ fn building_says_how_far_it_is_and_ends_when_it_is_asked_to() {
     assert!(sent.unwrap().success());
     let status = child.wait().unwrap();
     let mut rest = String::new();
-    told.read_to_string(&mut rest).unwrap();
+    printed.read_to_string(&mut rest).unwrap();
     assert_eq!(status.code(), Some(75), "{rest}");
     assert!(
         rest.contains("error: stopped early: 0 of 2 frames"),
         "{rest}"
     );
-    assert_eq!(place.kept().len(), 0);
+    assert_eq!(place.cached().len(), 0);
     // Nothing that it started is left: neither builders nor their linkers.
     let linkers = fs::read_to_string(place.path("linkers")).unwrap();
     for pid in linkers.split_whitespace() {
@@ -174,7 +178,7 @@ fn all_is_built_before_the_first_launch() {
     assert_eq!(device.built_kernels(), 2);
     launched(&passes).finish(&device).unwrap();
     assert_eq!(device.built_kernels(), 2);
-    // The control: what was not asked for is built at the end.
+    // The control: what was not requested is built at the end.
     launched(&[unique(2)]).finish(&device).unwrap();
     assert_eq!(device.built_kernels(), 3);
 }

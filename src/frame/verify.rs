@@ -10,10 +10,10 @@ use crate::extent::ImageSize;
 
 use super::{BitDepth, Encoding, Format, channels, read_metadata};
 
-/// Whether `path` is a whole picture of this size and encoding that carries all of `metadata`: one
-/// that need not be written again. Every pixel is read; a file that is missing, torn or anything
-/// else is none. Only formats that [carry metadata](Format::carries_metadata) can say.
-pub fn is_whole(
+/// Whether `path` is a complete picture of this size and encoding that carries all of `metadata`, and so
+/// need not be written again. Every pixel is read; a file that is missing, truncated or anything else is
+/// not complete. Only formats that [carry metadata](Format::carries_metadata) can be verified.
+pub fn is_complete(
     path: &Path,
     size: ImageSize,
     encoding: &Encoding,
@@ -25,14 +25,14 @@ pub fn is_whole(
     let carries = |(key, text): &(&str, &str)| texts.iter().any(|(k, t)| k == key && t == text);
     metadata.iter().all(carries)
         && match encoding.format {
-            Format::Png => is_whole_png(path, size, encoding.bit_depth).unwrap_or(false),
-            Format::Exr => is_whole_exr(path, size, encoding),
+            Format::Png => is_complete_png(path, size, encoding.bit_depth).unwrap_or(false),
+            Format::Exr => is_complete_exr(path, size, encoding),
             Format::Jpeg | Format::WebP | Format::Npy => false,
         }
 }
 
 /// `None`: not readable to its end.
-fn is_whole_png(path: &Path, size: ImageSize, bit_depth: BitDepth) -> Option<bool> {
+fn is_complete_png(path: &Path, size: ImageSize, bit_depth: BitDepth) -> Option<bool> {
     let file = BufReader::new(File::open(path).ok()?);
     let mut reader = ::png::Decoder::new(file).read_info().ok()?;
     let info = reader.info();
@@ -51,7 +51,7 @@ fn is_whole_png(path: &Path, size: ImageSize, bit_depth: BitDepth) -> Option<boo
     Some(true)
 }
 
-fn is_whole_exr(path: &Path, size: ImageSize, encoding: &Encoding) -> bool {
+fn is_complete_exr(path: &Path, size: ImageSize, encoding: &Encoding) -> bool {
     let Ok(image) = read_first_flat_layer_from_file(path) else {
         return false;
     };

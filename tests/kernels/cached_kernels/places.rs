@@ -1,4 +1,4 @@
-//! Where kernels are kept, where the driver builds, and what is said where neither can be.
+//! Where kernels are cached, where the driver builds, and what is said where neither can be.
 
 use std::fs;
 use std::path::Path;
@@ -40,9 +40,9 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
         command
     };
     for nowhere in [&file, &file.join("below")] {
-        let told = done(&place, &mut homeless(nowhere));
-        let note = told.lines().find(|line| line.contains("not kept"));
-        let note = note.unwrap_or_else(|| panic!("{told}"));
+        let printed = done(&place, &mut homeless(nowhere));
+        let note = printed.lines().find(|line| line.contains("not cached"));
+        let note = note.unwrap_or_else(|| panic!("{printed}"));
         assert!(
             note.starts_with("note: ") && note.contains("ANGIORAY_KERNEL_CACHE"),
             "{note}"
@@ -50,10 +50,10 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
         let folder = named(note, "angioray-driver-").unwrap();
         assert!(folder.is_absolute() && !folder.exists(), "{note}");
     }
-    // The control: where there is a folder nothing is said, and kernels are kept in it.
+    // The control: where there is a folder nothing is said, and kernels are cached in it.
     let cache = place.path("cache");
-    let told = done(&place, &mut homeless(&cache));
-    assert!(!told.contains("not kept"), "{told}");
+    let printed = done(&place, &mut homeless(&cache));
+    assert!(!printed.contains("not cached"), "{printed}");
     assert!(fs::read_dir(cache.join("angioray")).unwrap().count() > 0);
 }
 
@@ -65,8 +65,8 @@ fn an_empty_name_keeps_no_kernels() {
         command.env("ANGIORAY_KERNEL_CACHE", name);
         command.env("XDG_CACHE_HOME", place.path("cache"));
         command.current_dir(place.path(""));
-        let told = done(&place, &mut command);
-        assert!(!told.contains("note: kernels"), "{told}");
+        let printed = done(&place, &mut command);
+        assert!(!printed.contains("note: kernels"), "{printed}");
     };
     let files = || {
         let entries = fs::read_dir(place.path("")).unwrap();

@@ -236,7 +236,7 @@ fn a_cast_that_loses_rays_is_caught() {
         (
             "lib/find/crossing.clh",
             "which & state->begun & (inside ^ state->inside)",
-            "NO_LANE & (inside ^ search->inside)",
+            "NO_LANE & (inside ^ state->inside)",
         ),
         // A certificate that ignores rounding.
         (

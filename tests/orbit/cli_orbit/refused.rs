@@ -71,7 +71,7 @@ fn orbits_that_make_no_sense_are_refused() {
         ("--frames 3 -o a.gif --stats a.gif", 2, "a file each"),
         ("--frames 3 -o busy/%d.png", 74, "is not a folder"),
         ("--frames 3 -o busy/more/%d.png", 74, "is not a folder"),
-        ("--frames 3 -o none/a.gif", 74, "no folder"),
+        ("--frames 3 -o none/a.gif", 74, "does not exist"),
     ] {
         let said = place.refused(&format!("orbit v.nrrd {line} {REFERENCE}"), code);
         assert!(said.contains(reason), "{line}: {said}");

@@ -385,7 +385,7 @@ fn the_switches_are_read_from_the_kernels() {
     };
     assert_eq!(
         of("pass/cast_surface.cl"),
-        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2)])
+        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2), ("RAYS", 3)])
     );
     assert_eq!(
         of("pass/cast_maximum.cl"),
@@ -393,7 +393,8 @@ fn the_switches_are_read_from_the_kernels() {
             ("COUNTERS", 2),
             ("LANES", 3),
             ("LAYERS", 2),
-            ("PROJECTION", 3)
+            ("PROJECTION", 3),
+            ("RAYS", 3)
         ])
     );
     assert_eq!(
@@ -406,12 +407,13 @@ fn the_switches_are_read_from_the_kernels() {
             ("LAYERS", 2),
             ("NORMALS", 2),
             ("QUADRATURE", 6),
+            ("RAYS", 3),
             ("SHADED", 2)
         ])
     );
     assert_eq!(
         of("pass/surface_normal.cl"),
-        named(&[("GRADIENT", 4), ("LANES", 3)])
+        named(&[("GRADIENT", 4), ("LANES", 3), ("RAYS", 3)])
     );
     assert_eq!(
         of("pass/shade_surface.cl"),

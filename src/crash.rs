@@ -14,6 +14,14 @@ pub fn catch() {
     signals::catch();
 }
 
+/// Puts the handlers of [`catch`] in place again, where they were: a driver's compiler installs its own when
+/// it is first used, which are reset as soon as one thread's signal arrives, so that another thread's
+/// ends the process without a word.
+pub fn catch_again() {
+    #[cfg(unix)]
+    signals::catch_again();
+}
+
 /// Sets what the crash message names from now on, such as `the device 'x' was at work`.
 pub fn while_at_work(clause: &str) {
     #[cfg(unix)]
@@ -62,6 +70,16 @@ mod signals {
 
     pub fn catch() {
         CATCHING.store(true, Ordering::Relaxed);
+        install();
+    }
+
+    pub fn catch_again() {
+        if CATCHING.load(Ordering::Relaxed) {
+            install();
+        }
+    }
+
+    fn install() {
         for (signal, _) in SIGNALS {
             // SAFETY: the action is whole: zero is its empty mask and no flags. The handler calls only what
             // a handler may call. It runs on the stack that Rust's threads set aside, where there is one.

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use ocl::core::{self, Event, ProfilingInfo};
 
+use crate::crash;
 use crate::error::Result;
 
 use super::device::Device;
@@ -51,6 +52,7 @@ impl Timings {
     /// A pass does not build; a launch failed on the device.
     pub fn finish(self, device: &Device) -> Result<(Vec<PassTime>, f64)> {
         self.build(device)?;
+        crash::catch_again(); // a driver's compiler may have been at work
         let events = self.waiting.iter().map(|launch| launch.start(device));
         let events = events.collect::<Result<Vec<Event>>>()?;
         device.finish()?;

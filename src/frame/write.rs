@@ -46,7 +46,7 @@ pub fn write(
 
 impl Frame {
     /// Saves the picture in the format of the path's extension, whole or not at all: as displayed into PNG, JPEG
-    /// and WebP; as linear light with all its layers into EXR and NPY. [`write`] has options.
+    /// and WebP; as linear light with all its layers into EXR and NPY. [`write()`] has options.
     ///
     /// # Errors
     /// An extension that names no format (usage); a format for display, and a frame without its display plane;

@@ -120,7 +120,7 @@ pub struct Cost {
     pub uploaded_bytes: u64,
 }
 
-/// Chooses the cheapest setting of [`candidates`] that keeps the bound.
+/// Chooses the cheapest setting of the candidates that keeps the bound.
 ///
 /// The choice depends on how long candidates take, and so on the machine and its load; the
 /// pictures of each setting do not.

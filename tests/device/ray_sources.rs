@@ -128,11 +128,13 @@ fn a_ray_is_cast_from_its_smallest_t_to_its_greatest() {
         return;
     };
     let mut caster = RayCaster::new(&device, None);
-    let (mut ended, mut later) = (0, 0);
+    let (mut ended, mut again, mut later) = (0, 0, 0);
     for (target, rays) in aimed() {
         let found = cast(&mut caster, &target, &rays);
         let hits = rays.iter().zip(&found);
-        let hits = hits.filter(|(_, one)| one.kind == Kind::Surface && one.t > 0.1);
+        // Before a proven crossing rounding finds no other.
+        let proven = |one: &FirstCrossing| one.certificate == Certificate::Hit;
+        let hits = hits.filter(|(_, one)| one.kind == Kind::Surface && proven(one) && one.t > 0.1);
         let (rays, hits): (Vec<IndexRay>, Vec<&FirstCrossing>) = hits.unzip();
         let with = |t: fn(f32) -> [f32; 2]| -> Vec<IndexRay> {
             let parts = rays.iter().zip(&hits);
@@ -144,10 +146,16 @@ fn a_ray_is_cast_from_its_smallest_t_to_its_greatest() {
         assert!(before.iter().all(|one| one.kind == Kind::Nothing));
         let beyond = cast(&mut caster, &target, &with(|t| [0.0, 1.01 * t]));
         // Where a ray ends within a cell its cubic has other coefficients, rounded otherwise: near a double root the
-        // root moves by the square root of that.
+        // root moves by the square root of that, and where the field stays within rounding of the iso value
+        // nothing is decided before it leaves it.
         for (one, hit) in beyond.iter().zip(&hits) {
             let close = (one.t - hit.t).abs() <= 3e-4 * (1.0 + hit.t);
-            assert!(close && one.kind == hit.kind, "{one:?} {hit:?}");
+            let same = close && one.kind == hit.kind;
+            assert!(
+                same || one.certificate == Certificate::Undecided,
+                "{one:?} {hit:?}"
+            );
+            again += usize::from(same);
         }
         ended += before.len();
         let behind = cast(&mut caster, &target, &with(|t| [1.01 * t, f32::INFINITY]));
@@ -157,4 +165,5 @@ fn a_ray_is_cast_from_its_smallest_t_to_its_greatest() {
         }
     }
     assert!(ended > 1000 && later > 100, "{ended} {later}");
+    assert!(again > ended - ended / 100, "{again} of {ended}");
 }

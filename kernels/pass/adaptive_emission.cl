@@ -254,13 +254,13 @@ static inline void emit_along(VOXELS voxels, const Emitter *emitter, Accumulated
             absorbing = absorbing | (reading & absorbs);
             reading = reading & !absorbs;
             CellExit exit = cell_exit(&march->walk, reading);
-            reading = cells_go_on(march, exit, reading, reading);
+            reading = cells_advance(march, exit, reading, reading);
         }
         if (ANY(absorbing)) {
             CellExit exit = cell_exit(&march->walk, absorbing);
             CellPath path = cell_path(&march->walk, &corners, exit);
             add_cell(voxels, emitter, accumulated, path, share_per_mm, absorbing, samples);
-            cells_go_on(march, exit, absorbing, absorbing & accumulated->transmittance >= cast.min_transmittance);
+            cells_advance(march, exit, absorbing, absorbing & accumulated->transmittance >= cast.min_transmittance);
         }
     }
 }

@@ -238,7 +238,7 @@ static inline void project_cells(ProjectionState *state, CellMarch *march, VOXEL
         projection_skip(state, reading & !matters);
         if (ANY(matters))
             follow_cell(state, walk, &corners, exit, matters);
-        reading = cells_go_on(march, exit, reading, reading & !state->done);
+        reading = cells_advance(march, exit, reading, reading & !state->done);
     }
 }
 

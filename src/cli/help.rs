@@ -3,6 +3,7 @@
 use clap::{Arg, Command, CommandFactory};
 
 use super::Arguments;
+use crate::options::help::is_label;
 
 /// Columns of the help where the output is no terminal, and at most.
 pub const WIDTH: usize = 100;
@@ -10,36 +11,25 @@ pub const WIDTH: usize = 100;
 /// The width that the parser puts before and between the columns of the short help.
 const MARGINS: usize = 12;
 
-/// Modes and the like, which an option's text begins with.
-const WHERE: [&str; 10] = [
-    "iso",
-    "mip",
-    "minip",
-    "mean",
-    "lmip",
-    "dvr",
-    "shaded dvr",
-    "projections",
-    "fixed steps",
-    "video",
-];
-
-/// The short texts of options whose own text does not begin with one: the command, or nothing for all of
-/// them; the option; the text.
+/// The short texts of options whose own text does not begin with one, without what they belong to and their
+/// default: the command, or nothing for all of them; the option; the text.
 #[rustfmt::skip]
 const BRIEF: &[(&str, &str, &str)] = &[
     ("", "smooth", "Smooth with a Gaussian of this sigma in mm"),
-    ("", "caps", "iso: close the surface where the volume ends"),
-    ("", "lmip-threshold", "lmip: the value from which a local maximum counts"),
+    ("", "caps", "close the surface where the volume ends"),
+    ("", "refine", "how a hit is refined"),
+    ("", "diffuse", "light reflected in all directions"),
+    ("", "gradient-scale", "voxels from one to the next"),
+    ("", "lmip-threshold", "the value from which a local maximum counts"),
     ("", "raw-type", "Voxel type of a headerless raw file, such as u16be"),
     ("", "raw-offset", "Bytes before a headerless raw file's voxels"),
     ("", "light", "headlight, or the direction toward a distant light"),
-    ("", "gradient-smooth", "Sigma of smoothing before precomputed gradients"),
+    ("", "gradient-smooth", "sigma of the smoothing before them"),
     ("", "clip-plane", "Keep what lies on this side of a plane; up to 64 times"),
     ("", "sampling", "exact, solving every cell, or at fixed steps"),
-    ("", "probe", "Fixed steps: search for peaks between samples [default: on]"),
+    ("", "probe", "search for peaks between samples"),
     ("", "max-error", "Choose the cheapest sampling within this error"),
-    ("", "azimuth", "Turn the eye to the picture's right [default: 0]"),
+    ("", "azimuth", "Turn the eye to the picture's right"),
     ("", "ortho", "Orthographic, the picture being this high"),
     ("", "device", "A device's number, part of its name, or reference"),
     ("", "scene", "Options from a TOML file, or those of a picture that carries them"),
@@ -49,7 +39,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("replay", "volume", "The volume, if it is not where the picture says"),
     ("orbit", "output", "Pictures such as frames/%04d.png, or .gif .apng .mp4 .webm"),
     ("orbit", "resume", "Keep existing frames, make the missing ones"),
-    ("orbit", "axis", "The axis of rotation, through the target [default: up]"),
+    ("orbit", "axis", "The axis of rotation, through the target"),
     ("compare", "output", "A folder for the report, the tables and the pictures"),
     ("compare", "configs", "Settings to compare in place of the built-in ones"),
     ("bench", "output", "A folder for the table and the report"),
@@ -107,7 +97,10 @@ fn shortened_option(argument: Arg, command: &str, room: usize) -> Arg {
         Some(*option) == name.as_deref() && (of.is_empty() || *of == command)
     };
     let short = match BRIEF.iter().find(is_it) {
-        Some((_, _, text)) => (*text).to_owned(),
+        Some((_, _, text)) => {
+            let (label, _, default) = parts(&help);
+            brief(&format!("{label}{text}{default}"), room)
+        }
         None => brief(&help, room),
     };
     let long = argument.get_long_help().map(ToString::to_string);
@@ -155,40 +148,35 @@ fn brief(help: &str, room: usize) -> String {
     if length(help) <= room {
         return help.to_owned();
     }
-    let (text, default) = match help.rsplit_once(" [default: ") {
-        Some((text, default)) => (text, Some(format!(" [default: {default}"))),
-        None => (help, None),
-    };
-    let mut brief = first_clause(text);
+    let (label, text, default) = parts(help);
+    let mut brief = format!("{label}{}", first_clause(text));
     while length(&brief) > room {
         let Some(cut) = brief.rfind(", ").or_else(|| brief.rfind(' ')) else {
             break;
         };
         brief.truncate(cut);
     }
-    if let Some(default) = default
-        && length(&brief) + length(&default) <= room
-    {
-        brief.push_str(&default);
+    if length(&brief) + length(default) <= room {
+        brief.push_str(default);
     }
     brief
 }
 
-/// A text up to the end of its first clause, the modes that it begins with apart.
-fn first_clause(text: &str) -> String {
-    let (modes, text) = match text.split_once(": ") {
-        Some((modes, text)) if names_modes(modes) => (format!("{modes}: "), text),
-        _ => (String::new(), text),
-    };
-    let ends = [": ", "; ", ". ", " ("];
-    let end = ends.iter().filter_map(|end| text.find(end)).min();
-    let clause = end.map_or(text, |end| &text[..end]);
-    format!("{modes}{}", clause.trim_end_matches('.'))
+/// A help's label with its colon, its text, and its default in brackets; the first and the last may be
+/// empty.
+fn parts(help: &str) -> (&str, &str, &str) {
+    let end = help.rfind(" [default: ").unwrap_or(help.len());
+    let (text, default) = help.split_at(end);
+    let label = text.find(": ").filter(|&end| is_label(&text[..end]));
+    let (label, text) = text.split_at(label.map_or(0, |end| end + ": ".len()));
+    (label, text, default)
 }
 
-fn names_modes(text: &str) -> bool {
-    let mut names = text.split(", ");
-    names.all(|name| WHERE.iter().any(|mode| name.eq_ignore_ascii_case(mode)))
+/// A text up to the end of its first clause.
+fn first_clause(text: &str) -> &str {
+    let ends = [": ", "; ", ". ", " ("];
+    let end = ends.iter().filter_map(|end| text.find(end)).min();
+    text[..end.unwrap_or(text.len())].trim_end_matches('.')
 }
 
 #[cfg(test)]
@@ -273,12 +261,12 @@ mod tests {
         };
         let is_complete = |option: &Arg| {
             let (short, long) = (text(option.get_help()), text(option.get_long_help()));
-            let (before, _) = long.rsplit_once(" [default: ").unwrap_or((&long, ""));
-            let (short, _) = short.rsplit_once(" [default: ").unwrap_or((&short, ""));
-            short == before
+            let ((label, short, _), (whole, before, _)) = (parts(&short), parts(&long));
+            let is_clause = short == before
                 || short == first_clause(before)
-                || first_clause(before).starts_with(&format!("{short}, "))
-                || BRIEF.iter().any(|(_, _, brief)| brief.starts_with(short))
+                || first_clause(before).starts_with(&format!("{short}, "));
+            label == whole
+                && (is_clause || BRIEF.iter().any(|(_, _, brief)| brief.starts_with(short)))
         };
         let program = program();
         let cut_off: Vec<String> = program

@@ -9,6 +9,7 @@ use crate::extent::Range;
 use crate::number_text::{concise, concise_within};
 use crate::octree::Octree;
 use crate::options::group::group;
+use crate::options::help::completed;
 use crate::options::{SceneOptions, Switch, VolumeOptions};
 use crate::volume::{Histogram, percentiles};
 
@@ -28,6 +29,7 @@ const WIDTH: usize = 60;
 /// angioray wrote: the scene, as --scene takes it, and what it was made by.
 #[derive(clap::Args)]
 #[command(override_usage = "angioray info VOLUME|IMAGE [OPTIONS]")]
+#[command(mut_args(completed))]
 #[command(after_help = "Example:
   angioray info head.nrrd
   angioray info head.png

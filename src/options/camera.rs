@@ -19,25 +19,24 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Camera")]
     pub struct CameraOptions {
-        /// Width and height of the picture in pixels [default: 512x512]
+        /// Width and height of the picture in pixels
         #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
         size: ImageSize,
 
-        /// The eye's position in world space, mm (LPS: x to the patient's left, y to posterior, z
-        /// to superior)
+        /// The eye's position in world space, mm (LPS: x to the patient's left, y to posterior, z to
+        /// superior)
         #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
         eye: Triple,
 
-        /// The point in the picture's centre [default: the volume's centre]
+        /// The point in the picture's centre
         #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
         target: Triple,
 
-        /// The direction that is up in the picture, with --eye [default: 0,0,1; when looking along
-        /// z that of the views superior and inferior]
+        /// The direction that is up in the picture
         #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
         up: Triple,
 
-        /// Vertical field of view in degrees, before --zoom [default: 30]
+        /// Vertical field of view in degrees, before --zoom
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         fov: FovDeg,
 
@@ -45,33 +44,31 @@ group! {
         #[arg(long, value_name = "HEIGHT_MM", allow_hyphen_values = true)]
         ortho: HeightMm,
 
-        /// The side of the patient on which the eye is: anterior, posterior, left, right, superior
-        /// or inferior [default: anterior]
+        /// The side of the patient on which the eye is: anterior, posterior, left, right, superior or
+        /// inferior
         #[arg(long, value_name = "NAME")]
         view: View,
 
         /// Turn the eye about the target and the camera's up axis, to the picture's right: from the
-        /// anterior view, positive moves it to the patient's left [default: 0]
+        /// anterior view, positive moves it to the patient's left
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         azimuth: AngleDeg,
 
-        /// Then raise the eye toward the picture's top: from the sides, positive moves it toward
-        /// the head [default: 0]
+        /// Then raise the eye toward the picture's top: from the sides, positive moves it toward the head
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         elevation: AngleDeg,
 
         /// Then turn the camera clockwise about its line of sight, the picture anticlockwise
-        /// [default: 0]
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         roll: AngleDeg,
 
-        /// Magnify the picture by narrowing the lens; without --eye the whole volume's bounding
-        /// sphere fits at 1 [default: 1]
+        /// Magnify the picture by narrowing the lens; without --eye the whole volume's bounding sphere
+        /// fits at 1
         #[arg(long, value_name = "F", allow_hyphen_values = true)]
         zoom: Zoom,
 
-        /// A C-arm's angulation, such as 'LAO 30 CRA 20' (azimuth 30, elevation 20); RAO and CAU
-        /// are negative
+        /// A C-arm's angulation, such as 'LAO 30 CRA 20' (azimuth 30, elevation 20); RAO and CAU are
+        /// negative
         #[arg(long, value_name = "ANGLES")]
         carm: CArm,
     }

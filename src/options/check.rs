@@ -1,7 +1,8 @@
 //! What is refused of options before a volume is known.
 
+use super::conflicts::CONTRADICTIONS;
 use super::group::Keys;
-use super::rules::{CONTRADICTIONS, Group, Need, unmet};
+use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
 use crate::scene::{Mode, SamplingMethod};

@@ -12,9 +12,8 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Clipping")]
     pub struct ClipOptions {
-        /// Keep only the points x,y,z (world, mm) where NX*x + NY*y + NZ*z + D is not negative; may
-        /// be given up to 64 times, the normal may have any length; a scene file has a list of such
-        /// lists [default: the whole volume]
+        /// Keep only the points x,y,z (world, mm) where NX*x + NY*y + NZ*z + D is not negative; may be
+        /// given up to 64 times, the normal may have any length; a scene file has a list of such lists
         #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
         clip_plane: Vec<ClipPlane>,
     }

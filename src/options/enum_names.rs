@@ -1,6 +1,7 @@
 //! Choices that only options have, and their names.
 
 use super::text_form::text_form;
+use crate::scene::Mode;
 use crate::scene::enum_names::enum_names;
 
 /// The shading of a surface or a medium (`--shading`).
@@ -9,6 +10,16 @@ pub enum Shading {
     None,
     Phong,
     BlinnPhong,
+}
+
+impl Shading {
+    /// The shading of a mode where none is given: Phong's of a surface, none of a medium.
+    pub fn of(mode: Mode) -> Self {
+        match mode {
+            Mode::Iso => Self::Phong,
+            _ => Self::None,
+        }
+    }
 }
 enum_names!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "blinn-phong");
 

@@ -8,13 +8,12 @@ use crate::scene::Storage;
 
 group! {
     /// The options by which the program decides how rays are followed.
-    #[command(next_help_heading = "Sampling")]
+    #[command(next_help_heading = "Sampling", mut_args(super::help::completed_bound))]
     pub struct ToleranceOptions {
         /// Follow rays by the cheapest setting whose error, against the double-precision reference, is
         /// within BOUND: rmse, max (1/255), p99, psnr (dB, at least) of the colours; in iso depth
         /// (voxels) and missed (a share, 0.1%) hits; in projections value (a share of the value
-        /// range). Found by a probe and verified; takes the place of --sampling, --step, --probe,
-        /// --refine, --quad, --homogeneity and --termination
+        /// range). Found by a probe and verified
         #[arg(long, value_name = "METRIC:BOUND")]
         max_error: ErrorBound,
     }

@@ -5,7 +5,8 @@
 //! the [`Scene`](crate::scene::Scene): [`SceneOptions::resolve`] applies the defaults, which depend on the
 //! volume. With the scene it gives the options that make the same scene again and leave nothing to a default.
 //!
-//! All rules between options are in one table (`rules`).
+//! What an option needs and what applies without it is in one table (`rules`), which options exclude or
+//! replace each other beside it (`conflicts`); where helps begin and end is made of the table (`help`).
 //!
 //! What does not determine the picture (its file, the device) is no scene option, but its flags can
 //! be keys of a scene file all the same: any group of them can be taken from a [`SceneFile`].
@@ -14,9 +15,11 @@ mod camera;
 mod carm;
 mod check;
 mod clip;
+mod conflicts;
 mod enum_names;
 mod error_bound;
 pub(crate) mod group;
+pub(crate) mod help;
 mod max_error;
 mod notes;
 mod of_mode;
@@ -62,6 +65,7 @@ use group::Keys;
 /// Everything that determines a picture, as far as it is given: by flags, by a scene file, or by
 /// flags over a scene file ([`SceneOptions::over`]).
 #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
+#[command(mut_args(help::completed))]
 pub struct SceneOptions {
     #[command(flatten)]
     #[serde(flatten)]

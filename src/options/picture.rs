@@ -28,108 +28,99 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Picture")]
     pub struct PictureOptions {
-        /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission
-        /// and absorption) [default: iso]
+        /// What is shown: iso (a surface), mip, minip, mean, lmip (projections) or dvr (emission and
+        /// absorption)
         #[arg(long, value_name = "MODE")]
         mode: Mode,
 
-        /// iso: the surface's value; a number, a share of the value range such as 50%, a percentile of
-        /// the voxels such as p99.5 (nearest rank), or otsu [default: suggested by the volume's
-        /// histogram]
+        /// The surface's value; a number, a share of the value range such as 50%, a percentile of the
+        /// voxels such as p99.5 (nearest rank), or otsu
         #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
         iso: Threshold,
 
-        /// iso: close the surface where the volume ends or is clipped [default: on]
+        /// Close the surface where the volume ends or is clipped
         #[arg(long, value_name = "on|off")]
         caps: Switch,
 
-        /// iso: how the hit is refined between samples: none, bisection, regula-falsi, illinois or
-        /// newton, :N for N iterations; with fixed steps [default: regula-falsi:5]
+        /// How the hit is refined between samples: none, bisection, regula-falsi, illinois or newton, :N
+        /// for N iterations
         #[arg(long, value_name = "METHOD[:N]")]
         refine: Refine,
 
-        /// iso: the surface's colour: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as
-        /// ivory [default: warm ivory, 0.94,0.87,0.76]
+        /// The surface's colour: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as ivory
         #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         color: SrgbColor,
 
-        /// Projections: the values shown black and white; numbers, shares of the value range such as
-        /// 5%, percentiles of the voxels such as p99.5, or otsu. HI,LO inverts: what is bright in the
-        /// volume is dark in the picture [default: the value range, without a few far-away values and
-        /// padding]
+        /// The values shown black and white; numbers, shares of the value range such as 5%, percentiles
+        /// of the voxels such as p99.5, or otsu. HI,LO inverts: what is bright in the volume is dark in
+        /// the picture
         #[arg(long, value_name = "LO,HI", allow_hyphen_values = true)]
         window: WindowEnds,
 
-        /// lmip: the value from which a local maximum counts, written as that of --iso [default: the
-        /// suggested iso value]
+        /// The value from which a local maximum counts, written as that of --iso
         #[arg(long, value_name = "VALUE|N%|pN|otsu", allow_hyphen_values = true)]
         lmip_threshold: Threshold,
 
-        /// dvr: the transfer function, a TOML file or a preset: cta (Hounsfield units), mra or
-        /// 3dra (shares of the window's default) [default: 3dra]
+        /// The transfer function, a TOML file or a preset: cta (Hounsfield units), mra or 3dra (shares of
+        /// the window's default)
         #[arg(long, value_name = "FILE|PRESET")]
         tf: TransferChoice,
 
-        /// dvr: how light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or
-        /// preintegrated at the fixed step, or adaptive, which takes no steps and keeps every
-        /// channel within the error :BOUND of linear light, 0.001 by default [default: simpson;
-        /// adaptive where --sampling exact is given, and where no option for steps is and they would
-        /// cost out of proportion: spacings more than 100 times apart, or more than 16384 samples
-        /// per ray]
+        /// How light is summed along a ray: riemann, midpoint, simpson, romberg, rk4 or preintegrated at
+        /// the fixed step, or adaptive, which takes no steps and keeps every channel within the error
+        /// :BOUND of linear light, 0.001 by default
         #[arg(long, value_name = "METHOD[:BOUND]")]
         quad: Quadrature,
 
-        /// dvr: take an octree leaf for its average value, in one step, where that changes no
-        /// pixel by more than E [default: never]
+        /// Take an octree leaf for its average value, in one step, where that changes no pixel by more
+        /// than E
         #[arg(long, value_name = "E", allow_hyphen_values = true)]
         homogeneity: HomogeneityLimit,
 
-        /// dvr: what E limits: optical, the pixel's error; or range, the leaf's value range as a
-        /// share of the volume's, whatever the transfer function does in it [default: optical]
+        /// What E limits: optical, the pixel's error; or range, the leaf's value range as a share of the
+        /// volume's, whatever the transfer function does in it
         #[arg(long, value_name = "optical|range")]
         homogeneity_rule: HomogeneityRule,
 
-        /// dvr: the opacity at which a ray ends; the colour lost is at most 1 minus this
-        /// [default: 0.999]
+        /// The opacity at which a ray ends; the colour lost is at most 1 minus this
         #[arg(long, value_name = "OPACITY", allow_hyphen_values = true)]
         termination: Termination,
 
-        /// iso, dvr: none, phong or blinn-phong [default: phong for iso, none for dvr]
+        /// none, phong or blinn-phong
         #[arg(long, value_name = "NAME")]
         shading: Shading,
 
-        /// Light reflected from everywhere [default: 0.1]
+        /// Light reflected from everywhere
         #[arg(long, value_name = "A", allow_hyphen_values = true)]
         ambient: Reflectance,
 
-        /// Light of the source reflected in all directions [default: 0.9]
+        /// Light of the source reflected in all directions
         #[arg(long, value_name = "D", allow_hyphen_values = true)]
         diffuse: Reflectance,
 
-        /// Light of the source mirrored [default: 0.2]
+        /// Light of the source mirrored
         #[arg(long, value_name = "S", allow_hyphen_values = true)]
         specular: Reflectance,
 
-        /// Sharpness of the mirrored light [default: 32]
+        /// Sharpness of the mirrored light
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         shininess: Shininess,
 
-        /// headlight, or the world direction toward a distant light [default: headlight]
+        /// headlight, or the world direction toward a distant light
         #[arg(long, value_name = "headlight|X,Y,Z", allow_hyphen_values = true)]
         light: Light,
 
-        /// iso, shaded dvr: how normals are found: central, forward or fourth-order differences of
-        /// the field, or precomputed: central ones at every N-th voxel, interpolated between
-        /// [default: central]
+        /// How normals are found: central, forward or fourth-order differences of the field, or
+        /// precomputed: central ones at every N-th voxel, interpolated between
         #[arg(long, value_name = "NAME")]
         gradient: GradientMethod,
 
-        /// Voxels between two precomputed gradients, 1 to 8 [default: 2]
+        /// Voxels from one to the next, 1 to 8
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         gradient_scale: GradientScale,
 
-        /// Gaussian smoothing before precomputed gradients: its standard deviation in voxels of the
-        /// smallest spacing [default: 0, none]
+        /// Standard deviation of the Gaussian that smooths the field before, in voxels of the smallest
+        /// spacing
         #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         gradient_smooth: SigmaVoxels,
     }
@@ -138,15 +129,12 @@ group! {
 impl PictureOptions {
     /// Returns the mode: that of a surface where none is given.
     pub(super) fn mode(&self) -> Mode {
-        self.mode.unwrap_or(Mode::Iso)
+        self.mode.unwrap_or_default()
     }
 
     /// Returns the shading: Phong's for a surface and none for a medium where none is given.
     pub(super) fn shading(&self) -> Shading {
-        self.shading.unwrap_or(match self.mode() {
-            Mode::Iso => Shading::Phong,
-            _ => Shading::None,
-        })
+        self.shading.unwrap_or(Shading::of(self.mode()))
     }
 
     /// Returns whether the picture is shaded.

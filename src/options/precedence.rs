@@ -1,8 +1,9 @@
 //! Flags over a scene file: which of the file's options stay.
 
 use super::SceneOptions;
+use super::conflicts::{REPLACED, is_other_mode};
 use super::group::Keys;
-use super::rules::{Group, Need, REPLACED, has_needs, is_other_mode};
+use super::rules::{Group, Need, has_needs};
 
 impl SceneOptions {
     /// Lays these flags over a scene file's options. What a flag rules out in the file, such as the eye
@@ -43,7 +44,7 @@ impl SceneOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::rules::CONTRADICTIONS;
+    use crate::options::conflicts::CONTRADICTIONS;
 
     fn parse(text: &str) -> SceneOptions {
         SceneOptions::parse(text, "scene").unwrap()

@@ -1,13 +1,23 @@
-//! What each option belongs to, which options contradict each other, and which of a scene file's give way
-//! to a flag: all rules between options stand here.
+//! What each option belongs to, what it needs, and what applies where it is not given.
 //!
 //! An option is named by its flag, which is its key in scene files. Refusals ([`super::check`]), what is
 //! left of a scene file beside flags ([`super::precedence`]), what goes with a mode ([`super::of_mode`]),
-//! what settings and error bounds may say ([`super::Setting`], [`super::ToleranceOptions`]) are made of these
-//! tables. Options of other groups than the scene's are looked up by [`unmet`].
+//! what settings and error bounds may say ([`super::Setting`], [`super::ToleranceOptions`]), and where an
+//! option's help begins and ends ([`super::help`]) are made of this table. Options of other groups than the
+//! scene's are looked up by [`unmet`].
 
-use super::{SceneOptions, Shading};
-use crate::scene::{Mode, QuadratureMethod, SamplingMethod, Storage, View};
+use std::fmt::Display;
+
+use super::enum_names::{GradientMethod, NonFiniteRule, Shading, Switch};
+use super::quantities::{AngleDeg, GradientScale, SigmaMm, SigmaVoxels, Zoom};
+use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
+use crate::extent::ImageSize;
+use crate::octree::Leaf;
+use crate::scene::{
+    Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode, Picture, Quadrature,
+    Refine, Reflectance, Sampling, SamplingMethod, Shininess, SrgbColor, StepVoxels, Storage,
+    Termination, TransferFile, View,
+};
 
 /// The options among which a name is unique.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,19 +85,22 @@ pub(crate) enum Need {
     ResultsFolder,
 }
 
-/// An option, what it decides and what it needs.
+/// An option, what it decides, what it needs, and what applies without it.
 pub(crate) struct Rule {
     pub group: Group,
     pub option: &'static str,
     pub decides: Decides,
     pub needs: &'static [Need],
+    /// What applies where a scene's option is not given, as its help says it: the value that
+    /// [`super::SceneOptions::resolve`] takes, or how it is found; where nothing is said, nothing applies.
+    pub default: Option<fn() -> String>,
 }
 
 const ISO: &[Mode] = &[Mode::Iso];
 const LMIP: &[Mode] = &[Mode::Lmip];
 const DVR: &[Mode] = &[Mode::Dvr];
 const LIT: &[Mode] = &[Mode::Iso, Mode::Dvr];
-const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
+pub(super) const PROJECTIONS: &[Mode] = &[Mode::Mip, Mode::Lmip, Mode::Minip, Mode::Mean];
 /// The modes whose rays look for a crossing or an extremum, which may lie between two samples.
 const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 
@@ -105,7 +118,20 @@ const fn scene(option: &'static str, decides: Decides, needs: &'static [Need]) -
         option,
         decides,
         needs,
+        default: None,
     }
+}
+
+impl Rule {
+    const fn default(mut self, text: fn() -> String) -> Self {
+        self.default = Some(text);
+        self
+    }
+}
+
+/// The default of a type, as a user would write it.
+fn text<T: Default + Display>() -> String {
+    T::default().to_string()
 }
 
 const fn beside(group: Group, option: &'static str, needs: &'static [Need]) -> Rule {
@@ -114,6 +140,7 @@ const fn beside(group: Group, option: &'static str, needs: &'static [Need]) -> R
         option,
         decides: What,
         needs,
+        default: None,
     }
 }
 
@@ -121,64 +148,112 @@ const fn beside(group: Group, option: &'static str, needs: &'static [Need]) -> R
 #[rustfmt::skip]
 pub(crate) const RULES: &[Rule] = &[
     scene("volume", What, &[]),
-    scene("frame", What, &[]),
-    scene("smooth", What, &[]),
-    scene("non-finite", What, &[]),
+    scene("frame", What, &[])
+        .default(|| 0.to_string()),
+    scene("smooth", What, &[])
+        .default(|| format!("{}, not at all", text::<SigmaMm>())),
+    scene("non-finite", What, &[])
+        .default(text::<NonFiniteRule>),
     scene("raw-size", What, &[]),
     scene("raw-type", What, &[]),
-    scene("raw-spacing", What, &[]),
-    scene("raw-offset", What, &[]),
-    scene("octree-leaf", What, &[]),
+    scene("raw-spacing", What, &[])
+        .default(|| 1.to_string()),
+    scene("raw-offset", What, &[])
+        .default(|| 0.to_string()),
+    scene("octree-leaf", What, &[])
+        .default(|| Leaf::default().edge().to_string()),
 
-    scene("sampling", HowWithinBound, &[]),
-    scene("step", HowWithinBound, &[Need::Steps]),
-    scene("filter", How, &[]),
-    scene("traverse", How, &[]),
-    scene("skip", How, &[]),
-    scene("probe", HowWithinBound, &[Need::Steps, Need::IdleBeside(PEAKED)]),
-    scene("voxels", How, &[]),
+    scene("sampling", HowWithinBound, &[])
+        .default(default_sampling),
+    scene("step", HowWithinBound, &[Need::Steps])
+        .default(text::<StepVoxels>),
+    scene("filter", How, &[])
+        .default(text::<Filter>),
+    scene("traverse", How, &[])
+        .default(|| Sampling::default().traverse.to_string()),
+    scene("skip", How, &[])
+        .default(|| Switch::from(Sampling::default().skip).to_string()),
+    scene("probe", HowWithinBound, &[Need::Steps, Need::IdleBeside(PEAKED)])
+        .default(|| Switch::from(Sampling::default().probe).to_string()),
+    scene("voxels", How, &[])
+        .default(text::<Storage>),
 
-    scene("mode", What, &[]),
-    scene("iso", What, &[Need::Modes(ISO, "only a surface has an iso value")]),
-    scene("caps", What, &[Need::Modes(ISO, "only a surface is closed where the volume ends")]),
-    scene("refine", HowWithinBound, &[Need::Modes(ISO, "only a surface has a hit to refine"), Need::Steps]),
-    scene("color", What, &[Need::Modes(ISO, "a projection is grey, and dvr takes its colours from the transfer function")]),
-    scene("window", What, &[Need::Modes(PROJECTIONS, "only a projection shows values as grey")]),
-    scene("lmip-threshold", What, &[Need::Modes(LMIP, "only lmip looks for a local maximum")]),
-    scene("tf", What, &[Need::Modes(DVR, "only dvr maps values to opacity; a surface has 'color', a projection 'window'")]),
-    scene("quad", HowWithinBound, &[Need::Modes(DVR, "only dvr sums light along the ray")]),
-    scene("homogeneity", HowWithinBound, &[AVERAGED]),
-    scene("homogeneity-rule", HowWithinBound, &[AVERAGED, Need::Homogeneity]),
-    scene("termination", HowWithinBound, &[Need::Modes(DVR, "only dvr gathers opacity along the ray")]),
-    scene("shading", What, &[LIGHT]),
-    scene("ambient", What, &[LIGHT, Need::Shading]),
-    scene("diffuse", What, &[LIGHT, Need::Shading]),
-    scene("specular", What, &[LIGHT, Need::Shading]),
-    scene("shininess", What, &[LIGHT, Need::Shading]),
-    scene("light", What, &[LIGHT, Need::Shading]),
-    scene("gradient", How, &[NORMALS, Need::Normals]),
-    scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE]),
-    scene("gradient-smooth", How, &[NORMALS, Need::Normals, SMOOTHED]),
+    scene("mode", What, &[])
+        .default(text::<Mode>),
+    scene("iso", What, &[Need::Modes(ISO, "only a surface has an iso value")])
+        .default(|| "suggested by the volume's histogram".to_owned()),
+    scene("caps", What, &[Need::Modes(ISO, "only a surface is closed where the volume ends")])
+        .default(|| Switch::from(Picture::CAPS).to_string()),
+    scene("refine", HowWithinBound, &[Need::Modes(ISO, "only a surface has a hit to refine"), Need::Steps])
+        .default(text::<Refine>),
+    scene("color", What, &[Need::Modes(ISO, "a projection is grey, and dvr takes its colours from the transfer function")])
+        .default(|| format!("warm ivory, {}", SrgbColor::IVORY)),
+    scene("window", What, &[Need::Modes(PROJECTIONS, "only a projection shows values as grey")])
+        .default(|| "the value range, without a few far-away values and padding".to_owned()),
+    scene("lmip-threshold", What, &[Need::Modes(LMIP, "only lmip looks for a local maximum")])
+        .default(|| "the suggested iso value".to_owned()),
+    scene("tf", What, &[Need::Modes(DVR, "only dvr maps values to opacity; a surface has 'color', a projection 'window'")])
+        .default(|| TransferFile::DEFAULT_PRESET.to_owned()),
+    scene("quad", HowWithinBound, &[Need::Modes(DVR, "only dvr sums light along the ray")])
+        .default(default_quadrature),
+    scene("homogeneity", HowWithinBound, &[AVERAGED])
+        .default(|| "never".to_owned()),
+    scene("homogeneity-rule", HowWithinBound, &[AVERAGED, Need::Homogeneity])
+        .default(text::<HomogeneityRule>),
+    scene("termination", HowWithinBound, &[Need::Modes(DVR, "only dvr gathers opacity along the ray")])
+        .default(text::<Termination>),
+    scene("shading", What, &[LIGHT])
+        .default(default_shading),
+    scene("ambient", What, &[LIGHT, Need::Shading])
+        .default(|| Reflectance::AMBIENT.to_string()),
+    scene("diffuse", What, &[LIGHT, Need::Shading])
+        .default(|| Reflectance::DIFFUSE.to_string()),
+    scene("specular", What, &[LIGHT, Need::Shading])
+        .default(|| Reflectance::SPECULAR.to_string()),
+    scene("shininess", What, &[LIGHT, Need::Shading])
+        .default(text::<Shininess>),
+    scene("light", What, &[LIGHT, Need::Shading])
+        .default(text::<Light>),
+    scene("gradient", How, &[NORMALS, Need::Normals])
+        .default(text::<GradientMethod>),
+    scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE])
+        .default(text::<GradientScale>),
+    scene("gradient-smooth", How, &[NORMALS, Need::Normals, SMOOTHED])
+        .default(|| format!("{}, none", text::<SigmaVoxels>())),
 
-    scene("size", What, &[]),
+    scene("size", What, &[])
+        .default(|| ImageSize::DEFAULT.to_string()),
     scene("eye", What, &[]),
-    scene("target", What, &[]),
-    scene("up", What, &[Need::Eye]),
-    scene("fov", What, &[]),
+    scene("target", What, &[])
+        .default(|| "the volume's centre".to_owned()),
+    scene("up", What, &[Need::Eye])
+        .default(|| "0,0,1; when looking along z that of the views superior and inferior".to_owned()),
+    scene("fov", What, &[])
+        .default(text::<FovDeg>),
     scene("ortho", What, &[]),
-    scene("view", What, &[]),
-    scene("azimuth", What, &[]),
-    scene("elevation", What, &[]),
-    scene("roll", What, &[]),
-    scene("zoom", What, &[]),
+    scene("view", What, &[])
+        .default(text::<View>),
+    scene("azimuth", What, &[])
+        .default(text::<AngleDeg>),
+    scene("elevation", What, &[])
+        .default(text::<AngleDeg>),
+    scene("roll", What, &[])
+        .default(text::<AngleDeg>),
+    scene("zoom", What, &[])
+        .default(text::<Zoom>),
     scene("carm", What, &[]),
 
-    scene("clip-plane", What, &[]),
+    scene("clip-plane", What, &[])
+        .default(|| "the whole volume".to_owned()),
 
-    scene("background", What, &[]),
-    scene("brightness", What, &[]),
-    scene("contrast", What, &[]),
-    scene("gamma", What, &[]),
+    scene("background", What, &[])
+        .default(|| SrgbColor::BLACK.to_string()),
+    scene("brightness", What, &[])
+        .default(text::<Brightness>),
+    scene("contrast", What, &[])
+        .default(text::<Contrast>),
+    scene("gamma", What, &[])
+        .default(text::<Gamma>),
 
     beside(Group::Device, "work-group", &[Need::OpenCl]),
     beside(Group::Device, "lanes", &[Need::OpenCl]),
@@ -197,6 +272,42 @@ pub(crate) const RULES: &[Rule] = &[
     beside(Group::Bench, "iso", &[Need::Volumes]),
     beside(Group::Bench, "restart", &[Need::ResultsFolder]),
 ];
+
+fn default_sampling() -> String {
+    let (default, steps) = (SamplingMethod::default(), SamplingMethod::Fixed);
+    let implying = RULES
+        .iter()
+        .filter(|rule| rule.needs.contains(&Need::Steps));
+    let implying: Vec<String> = implying.map(|rule| format!("--{}", rule.option)).collect();
+    format!(
+        "{default}; {steps} where {} is given; in dvr exact is --quad adaptive, fixed all others",
+        either(&implying)
+    )
+}
+
+fn default_quadrature() -> String {
+    format!(
+        "{}; adaptive where --sampling exact is given, and where no option for steps is and they would \
+         cost out of proportion: spacings more than {UNLIKE_SPACINGS} times apart, or more than \
+         {MANY_SAMPLES} samples per ray",
+        Quadrature::default()
+    )
+}
+
+fn default_shading() -> String {
+    let of_modes = LIT
+        .iter()
+        .map(|mode| format!("{} for {mode}", Shading::of(*mode)));
+    of_modes.collect::<Vec<_>>().join(", ")
+}
+
+/// A list whose last two items are joined by "or".
+fn either(items: &[String]) -> String {
+    match items {
+        [items @ .., last] if !items.is_empty() => format!("{} or {last}", items.join(", ")),
+        _ => items.concat(),
+    }
+}
 
 /// The rule of an option, where there is one.
 pub(crate) fn rule(group: Group, option: &str) -> Option<&'static Rule> {
@@ -238,250 +349,22 @@ pub(super) fn needs(option: &str, need: Need) -> bool {
     rule(Group::Scene, option).is_some_and(|rule| rule.needs.contains(&need))
 }
 
-/// Two options of one scene that cannot both be meant.
-pub(super) struct Contradiction {
-    pub is_in: fn(&SceneOptions) -> bool,
-    pub sentence: &'static str,
-    pub hint: &'static str,
-}
-
-/// The options of a scene that contradict each other.
-pub(super) const CONTRADICTIONS: &[Contradiction] = &[
-    Contradiction {
-        is_in: |all| all.camera.fov.is_some() && all.camera.ortho.is_some(),
-        sentence: "'fov' and 'ortho' cannot be combined: a picture is perspective or orthographic",
-        hint: "",
-    },
-    Contradiction {
-        is_in: |all| all.camera.eye.is_some() && all.camera.view.is_some(),
-        sentence: "'eye' and 'view' cannot be combined: both place the eye",
-        hint: TURNED,
-    },
-    Contradiction {
-        is_in: |all| all.camera.eye.is_some() && all.camera.carm.is_some(),
-        sentence: "'eye' and 'carm' cannot be combined: both place the eye",
-        hint: TURNED,
-    },
-    Contradiction {
-        is_in: |all| {
-            let from_elsewhere = all.camera.view.is_some_and(|view| view != View::Anterior);
-            all.camera.carm.is_some() && from_elsewhere
-        },
-        sentence: "'carm' and 'view' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
-        hint: "",
-    },
-    Contradiction {
-        is_in: |all| all.camera.carm.is_some() && all.camera.azimuth.is_some(),
-        sentence: "'carm' and 'azimuth' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
-        hint: "",
-    },
-    Contradiction {
-        is_in: |all| all.camera.carm.is_some() && all.camera.elevation.is_some(),
-        sentence: "'carm' and 'elevation' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
-        hint: "",
-    },
-    Contradiction {
-        is_in: |all| averages(all) && all.picture.is_shaded(),
-        sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
-        hint: "choose shading none, or leave homogeneity out",
-    },
-    Contradiction {
-        is_in: |all| averages(all) && !all.quadrature().is_stepped(),
-        sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
-        hint: "choose another quad, or leave homogeneity out",
-    },
-];
-
-/// Whether the averages of nodes are used.
-fn averages(options: &SceneOptions) -> bool {
-    options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
-}
-
-const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
-
-/// Options of a scene file that flags replace, beside those of the flags' own keys and those that no
-/// longer have what they need.
-pub(super) struct Replaced {
-    /// Whether these flags replace options of this file.
-    pub by: fn(&SceneOptions, &SceneOptions) -> bool,
-    /// The file's options that are dropped.
-    pub options: &'static [&'static str],
-}
-
-/// All flags that win over other options of a scene file.
-pub(super) const REPLACED: &[Replaced] = &[
-    // An integral is not sampled as a surface is: neither's sampling is the other's.
-    Replaced {
-        by: |flags, file| {
-            let is_dvr = |options: &SceneOptions| options.mode() == Mode::Dvr;
-            flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
-        },
-        options: &["sampling", "step", "probe", "refine"],
-    },
-    // Light of which the file's own mode made no use is not another mode's.
-    Replaced {
-        by: |flags, file| is_other_mode(flags, file) && !file.mode().is_lit(),
-        options: &["shading"],
-    },
-    Replaced {
-        by: |flags, file| {
-            let was_lit = file.mode().is_lit() && file.picture.is_shaded();
-            is_other_mode(flags, file) && flags.picture.shading.is_none() && !was_lit
-        },
-        options: &["ambient", "diffuse", "specular", "shininess", "light"],
-    },
-    // What implies steps wins over a sampling.
-    Replaced {
-        by: |flags, _| {
-            let of_rules = flags.picture.quad.is_some() || flags.picture.homogeneity.is_some();
-            flags.sampling.sampling.is_none() && (flags.steps_given() || of_rules)
-        },
-        options: &["sampling"],
-    },
-    // A sampling wins over what implies another.
-    Replaced {
-        by: |flags, file| {
-            let methods = flags.sampling.sampling.zip(file.picture.quad);
-            methods.is_some_and(|(method, quad)| quad.sampling() != method)
-        },
-        options: &["quad"],
-    },
-    Replaced {
-        by: |flags, _| is_exact(flags),
-        options: &["step", "probe", "refine", "homogeneity", "homogeneity-rule"],
-    },
-    Replaced {
-        by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),
-        options: &["voxels"],
-    },
-    // Homogeneous nodes have neither normals nor an error bound.
-    Replaced {
-        by: |flags, _| {
-            let shading = flags.picture.shading;
-            shading.is_some_and(|shading| shading != Shading::None) || is_adaptive(flags)
-        },
-        options: &["homogeneity", "homogeneity-rule"],
-    },
-    Replaced {
-        by: |flags, _| flags.picture.homogeneity.is_some(),
-        options: &["shading"],
-    },
-    Replaced {
-        by: |flags, file| flags.picture.homogeneity.is_some() && is_adaptive(file),
-        options: &["quad"],
-    },
-    // An eye replaces a view and a view an eye, each with what turns it.
-    Replaced {
-        by: |flags, _| flags.camera.eye.is_some(),
-        options: &["view", "carm", "azimuth", "elevation", "roll"],
-    },
-    Replaced {
-        by: |flags, file| {
-            let by_view = flags.camera.view.is_some() || flags.camera.carm.is_some();
-            file.camera.eye.is_some() && by_view
-        },
-        options: &["eye", "up", "view", "carm", "azimuth", "elevation", "roll"],
-    },
-    Replaced {
-        by: |flags, _| flags.camera.carm.is_some(),
-        options: &["view", "azimuth", "elevation"],
-    },
-    Replaced {
-        by: |flags, _| {
-            let camera = &flags.camera;
-            camera.view.is_some() || camera.azimuth.is_some() || camera.elevation.is_some()
-        },
-        options: &["carm"],
-    },
-    // One lens replaces the other.
-    Replaced {
-        by: |flags, _| flags.camera.fov.is_some(),
-        options: &["ortho"],
-    },
-    Replaced {
-        by: |flags, _| flags.camera.ortho.is_some(),
-        options: &["fov"],
-    },
-];
-
-/// Whether the flags name another mode than the file's.
-pub(super) fn is_other_mode(flags: &SceneOptions, file: &SceneOptions) -> bool {
-    flags.picture.mode.is_some_and(|mode| mode != file.mode())
-}
-
-fn is_exact(options: &SceneOptions) -> bool {
-    options.sampling.sampling == Some(SamplingMethod::Exact)
-}
-
-fn is_adaptive(options: &SceneOptions) -> bool {
-    let method = options.picture.quad.map(|quad| quad.method());
-    method == Some(QuadratureMethod::Adaptive)
-}
-
 #[cfg(test)]
 mod tests {
     use clap::Args;
 
     use super::*;
-    use crate::options::flag_names;
-
-    fn names_of_options() -> Vec<String> {
-        let mut names = flag_names(&SceneOptions::augment_args(clap::Command::new("scene")));
-        names.sort();
-        names
-    }
+    use crate::options::{SceneOptions, flag_names};
 
     #[test]
     fn every_option_of_a_scene_has_one_rule() {
+        let mut names = flag_names(&SceneOptions::augment_args(clap::Command::new("scene")));
+        names.sort();
         let of_scene = RULES.iter().filter(|rule| rule.group == Group::Scene);
         let mut ruled: Vec<&str> = of_scene.map(|rule| rule.option).collect();
         ruled.sort_unstable();
-        assert_eq!(ruled, names_of_options());
+        assert_eq!(ruled, names);
         // The control: a rule of no option, and an option without a rule, would be seen.
         assert!(!ruled.contains(&"lmip_threshold"));
-    }
-
-    #[test]
-    fn what_is_replaced_is_an_option() {
-        let names = names_of_options();
-        for replaced in REPLACED {
-            for option in replaced.options {
-                assert!(names.iter().any(|name| name == option), "{option}");
-            }
-        }
-    }
-
-    #[test]
-    fn helps_name_the_modes_of_the_table_first() {
-        let command = SceneOptions::augment_args(clap::Command::new("scene"));
-        let named = |help: &str| -> Option<Vec<Mode>> {
-            let (modes, _) = help.split_once(": ")?;
-            if modes == "Projections" {
-                return Some(PROJECTIONS.to_vec());
-            }
-            let modes = modes
-                .split(", ")
-                .map(|mode| mode.trim_start_matches("shaded "));
-            modes.map(|mode| mode.parse().ok()).collect()
-        };
-        let mut compared = 0;
-        for argument in command.get_arguments() {
-            let option = flag_names(&clap::Command::new("one").arg(argument.clone()));
-            let help = argument.get_help().map(ToString::to_string);
-            let (Some(modes), Some(rule)) = (
-                help.as_deref().and_then(named),
-                rule(Group::Scene, &option[0]),
-            ) else {
-                continue;
-            };
-            let needs = rule.needs.iter();
-            let ruled = needs.filter_map(|need| match need {
-                Need::Modes(modes, _) => Some(modes.to_vec()),
-                _ => None,
-            });
-            assert_eq!(ruled.collect::<Vec<_>>(), [modes], "{}", option[0]);
-            compared += 1;
-        }
-        assert!(compared > 10, "{compared}");
     }
 }

@@ -12,40 +12,37 @@ group! {
     #[derive(serde::Serialize)]
     #[command(next_help_heading = "Sampling")]
     pub struct SamplingOptions {
-        /// Where a surface or a projected value is searched for: exact, solving the field in every
-        /// cell along the ray, so that nothing is missed; or fixed, at steps [default: exact; fixed
-        /// where --step, --refine or --probe is given; in dvr exact is --quad adaptive, fixed all
-        /// others]
+        /// Where a surface or a projected value is searched for: exact, solving the field in every cell
+        /// along the ray, so that nothing is missed; or fixed, at steps
         #[arg(long, value_name = "fixed|exact")]
         sampling: SamplingMethod,
 
-        /// Distance of samples along a ray, in voxels of the smallest spacing, where they are fixed
-        /// [default: 0.5]
+        /// Distance of samples along a ray, in voxels of the smallest spacing
         #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         step: StepVoxels,
 
-        /// The field between voxel centres: nearest or linear [default: linear]
+        /// The field between voxel centres: nearest or linear
         #[arg(long, value_name = "nearest|linear")]
         filter: Filter,
 
         /// How empty space is skipped: uniform, kd-restart, hierarchical, revelles or distance; never
-        /// changes the picture [default: distance]
+        /// changes the picture
         #[arg(long, value_name = "NAME")]
         traverse: Traverse,
 
-        /// Skip empty space; never changes the picture [default: on]
+        /// Skip empty space; never changes the picture
         #[arg(long, value_name = "on|off")]
         skip: Switch,
 
-        /// Fixed steps: search between two samples where the field's slopes along the ray point at a peak between
-        /// them, for the surface in iso and the extremum in mip, minip and lmip; off: fixed steps
-        /// and nothing else [default: on]
+        /// Search between two samples where the field's slopes along the ray point at a peak between
+        /// them, for the surface in iso and the extremum in mip, minip and lmip; off: fixed steps and
+        /// nothing else
         #[arg(long, value_name = "on|off")]
         probe: Switch,
 
         /// How a device holds the voxels: buffer; image, read voxel by voxel, which never changes the
-        /// picture; or filtered, an image (a texture) whose own filter takes the samples of fixed
-        /// steps, on most GPUs with weights of eight bits [default: buffer]
+        /// picture; or filtered, an image (a texture) whose own filter takes the samples of fixed steps,
+        /// on most GPUs with weights of eight bits
         #[arg(long, value_name = "buffer|image|filtered")]
         voxels: Storage,
     }

@@ -8,11 +8,11 @@ use crate::scene::{
 use crate::subject::Subject;
 
 /// Spacings further apart than this make the step, a share of the smallest, far too fine along the largest.
-const UNLIKE_SPACINGS: f64 = 100.0;
+pub(super) const UNLIKE_SPACINGS: f64 = 100.0;
 
 /// Samples along a volume's longest path beyond which fixed steps are not taken unless they are wanted,
 /// and are reported where they are.
-const MANY_SAMPLES: f64 = 16_384.0;
+pub(super) const MANY_SAMPLES: f64 = 16_384.0;
 
 /// The greatest number of samples that a ray takes at a step.
 fn samples_along(subject: &Subject, step: StepVoxels) -> f64 {

@@ -56,7 +56,7 @@ impl PictureOptions {
 
     fn surface(self, lighting: Lighting, subject: &Subject) -> Result<ResolvedPicture> {
         let iso = value(self.iso, subject)?;
-        let caps = self.caps.is_none_or(Switch::is_on);
+        let caps = self.caps.map_or(Picture::CAPS, Switch::is_on);
         let refine = self.refine.unwrap_or_default();
         let color = self.color.unwrap_or(SrgbColor::IVORY);
         Ok(ResolvedPicture {

@@ -12,19 +12,18 @@ group! {
     #[command(next_help_heading = "Display (PNG, JPEG, WebP)")]
     pub struct ToneOptions {
         /// Colour behind everything: sRGB r,g,b from 0 to 1, #rrggbb, #rgb, or a CSS name such as white
-        /// [default: 0,0,0]
         #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
         background: SrgbColor,
 
-        /// Added to the encoded picture, -1 to 1 [default: 0]
+        /// Added to the encoded picture, -1 to 1
         #[arg(long, value_name = "B", allow_hyphen_values = true)]
         brightness: Brightness,
 
-        /// Slope about middle grey [default: 1]
+        /// Slope about middle grey
         #[arg(long, value_name = "C", allow_hyphen_values = true)]
         contrast: Contrast,
 
-        /// Above 1 brightens the middle, below 1 darkens it [default: 1]
+        /// Above 1 brightens the middle, below 1 darkens it
         #[arg(long, value_name = "G", allow_hyphen_values = true)]
         gamma: Gamma,
     }

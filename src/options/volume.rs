@@ -63,16 +63,15 @@ group! {
         #[arg(value_name = "VOLUME", help_heading = None::<&str>)]
         volume: FilePath,
 
-        /// Which volume of a 4-D file, counted from 0 [default: 0]
+        /// Which volume of a 4-D file, counted from 0
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         frame: u32,
 
-        /// Smooth with a Gaussian of this standard deviation in mm [default: 0, not at all]
+        /// Smooth with a Gaussian of this standard deviation in mm
         #[arg(long, value_name = "SIGMA_MM", allow_hyphen_values = true)]
         smooth: SigmaMm,
 
         /// NaN and infinite voxels: replace (by the smallest finite value) or refuse
-        /// [default: replace]
         #[arg(long, value_name = "replace|refuse")]
         non_finite: NonFiniteRule,
 
@@ -84,16 +83,16 @@ group! {
         #[arg(long, value_name = "TYPE")]
         raw_type: String,
 
-        /// Voxel spacing of a headerless raw file, mm [default: 1]
+        /// Voxel spacing of a headerless raw file, mm
         #[arg(long, value_name = "S|SX,SY,SZ", allow_hyphen_values = true)]
         raw_spacing: SpacingMm,
 
-        /// Bytes before the first voxel of a headerless raw file [default: 0]
+        /// Bytes before the first voxel of a headerless raw file
         #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
         raw_offset: u64,
 
         /// Edge of the octree's leaves in cells (a cell lies between 8 voxel centres), 4 to 32; never
-        /// changes the picture [default: 4]
+        /// changes the picture
         #[arg(long, value_name = "CELLS", allow_hyphen_values = true)]
         octree_leaf: u32,
     }

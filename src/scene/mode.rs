@@ -1,9 +1,10 @@
 //! The kinds of pictures.
 
 /// The kind of a picture (`--mode`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
     /// A surface, where the field crosses a value.
+    #[default]
     Iso,
     /// The maximum along each ray.
     Mip,

@@ -70,6 +70,9 @@ impl Emission {
 }
 
 impl Picture {
+    /// Whether a surface is closed where the volume ends, where nothing else is given.
+    pub const CAPS: bool = true;
+
     /// Constructs the picture of a mode as the command line makes it where nothing else is given.
     ///
     /// # Errors
@@ -82,7 +85,7 @@ impl Picture {
         match mode {
             Mode::Iso => Ok(Self::Surface {
                 iso: subject.suggested_iso,
-                caps: true,
+                caps: Self::CAPS,
                 refine: Refine::default(),
                 color: SrgbColor::IVORY.linear(),
                 phong: Some(Phong::default()),

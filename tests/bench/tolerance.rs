@@ -182,9 +182,12 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
         ),
         (
             "--max-error rmse:0.01 --sampling exact",
-            "'sampling' exclude",
+            "'sampling' cannot be combined",
         ),
-        ("--max-error rmse:0.01 --refine none", "'refine' exclude"),
+        (
+            "--max-error rmse:0.01 --refine none",
+            "'refine' cannot be combined",
+        ),
         ("--max-error value:1% --mode iso", "only a projection shows"),
         ("--max-error depth:0.1 --mode dvr", "only a surface is hit"),
         ("--max-error rmse", "is not an error bound"),

@@ -1,0 +1,203 @@
+//! Which options of a scene contradict each other, and which of a scene file's give way to a flag beside
+//! those that lose what they need ([`super::rules`]).
+
+use super::{SceneOptions, Shading};
+use crate::scene::{Mode, QuadratureMethod, SamplingMethod, Storage, View};
+
+/// Two options of one scene that cannot both be meant.
+pub(super) struct Contradiction {
+    pub is_in: fn(&SceneOptions) -> bool,
+    pub sentence: &'static str,
+    pub hint: &'static str,
+}
+
+/// The options of a scene that contradict each other.
+pub(super) const CONTRADICTIONS: &[Contradiction] = &[
+    Contradiction {
+        is_in: |all| all.camera.fov.is_some() && all.camera.ortho.is_some(),
+        sentence: "'fov' and 'ortho' cannot be combined: a picture is perspective or orthographic",
+        hint: "",
+    },
+    Contradiction {
+        is_in: |all| all.camera.eye.is_some() && all.camera.view.is_some(),
+        sentence: "'eye' and 'view' cannot be combined: both place the eye",
+        hint: TURNED,
+    },
+    Contradiction {
+        is_in: |all| all.camera.eye.is_some() && all.camera.carm.is_some(),
+        sentence: "'eye' and 'carm' cannot be combined: both place the eye",
+        hint: TURNED,
+    },
+    Contradiction {
+        is_in: |all| {
+            let from_elsewhere = all.camera.view.is_some_and(|view| view != View::Anterior);
+            all.camera.carm.is_some() && from_elsewhere
+        },
+        sentence: "'carm' and 'view' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
+        hint: "",
+    },
+    Contradiction {
+        is_in: |all| all.camera.carm.is_some() && all.camera.azimuth.is_some(),
+        sentence: "'carm' and 'azimuth' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
+        hint: "",
+    },
+    Contradiction {
+        is_in: |all| all.camera.carm.is_some() && all.camera.elevation.is_some(),
+        sentence: "'carm' and 'elevation' cannot be combined: 'carm' is azimuth and elevation from the anterior view",
+        hint: "",
+    },
+    Contradiction {
+        is_in: |all| averages(all) && all.picture.is_shaded(),
+        sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
+        hint: "choose shading none, or leave homogeneity out",
+    },
+    Contradiction {
+        is_in: |all| averages(all) && !all.quadrature().is_stepped(),
+        sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
+        hint: "choose another quad, or leave homogeneity out",
+    },
+];
+
+/// Whether the averages of nodes are used.
+fn averages(options: &SceneOptions) -> bool {
+    options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
+}
+
+const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
+
+/// Options of a scene file that flags replace, beside those of the flags' own keys and those that no
+/// longer have what they need.
+pub(super) struct Replaced {
+    /// Whether these flags replace options of this file.
+    pub by: fn(&SceneOptions, &SceneOptions) -> bool,
+    /// The file's options that are dropped.
+    pub options: &'static [&'static str],
+}
+
+/// All flags that win over other options of a scene file.
+pub(super) const REPLACED: &[Replaced] = &[
+    // An integral is not sampled as a surface is: neither's sampling is the other's.
+    Replaced {
+        by: |flags, file| {
+            let is_dvr = |options: &SceneOptions| options.mode() == Mode::Dvr;
+            flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
+        },
+        options: &["sampling", "step", "probe", "refine"],
+    },
+    // Light of which the file's own mode made no use is not another mode's.
+    Replaced {
+        by: |flags, file| is_other_mode(flags, file) && !file.mode().is_lit(),
+        options: &["shading"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let was_lit = file.mode().is_lit() && file.picture.is_shaded();
+            is_other_mode(flags, file) && flags.picture.shading.is_none() && !was_lit
+        },
+        options: &["ambient", "diffuse", "specular", "shininess", "light"],
+    },
+    // What implies steps wins over a sampling.
+    Replaced {
+        by: |flags, _| {
+            let of_rules = flags.picture.quad.is_some() || flags.picture.homogeneity.is_some();
+            flags.sampling.sampling.is_none() && (flags.steps_given() || of_rules)
+        },
+        options: &["sampling"],
+    },
+    // A sampling wins over what implies another.
+    Replaced {
+        by: |flags, file| {
+            let methods = flags.sampling.sampling.zip(file.picture.quad);
+            methods.is_some_and(|(method, quad)| quad.sampling() != method)
+        },
+        options: &["quad"],
+    },
+    Replaced {
+        by: |flags, _| is_exact(flags),
+        options: &["step", "probe", "refine", "homogeneity", "homogeneity-rule"],
+    },
+    Replaced {
+        by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),
+        options: &["voxels"],
+    },
+    // Homogeneous nodes have neither normals nor an error bound.
+    Replaced {
+        by: |flags, _| {
+            let shading = flags.picture.shading;
+            shading.is_some_and(|shading| shading != Shading::None) || is_adaptive(flags)
+        },
+        options: &["homogeneity", "homogeneity-rule"],
+    },
+    Replaced {
+        by: |flags, _| flags.picture.homogeneity.is_some(),
+        options: &["shading"],
+    },
+    Replaced {
+        by: |flags, file| flags.picture.homogeneity.is_some() && is_adaptive(file),
+        options: &["quad"],
+    },
+    // An eye replaces a view and a view an eye, each with what turns it.
+    Replaced {
+        by: |flags, _| flags.camera.eye.is_some(),
+        options: &["view", "carm", "azimuth", "elevation", "roll"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let by_view = flags.camera.view.is_some() || flags.camera.carm.is_some();
+            file.camera.eye.is_some() && by_view
+        },
+        options: &["eye", "up", "view", "carm", "azimuth", "elevation", "roll"],
+    },
+    Replaced {
+        by: |flags, _| flags.camera.carm.is_some(),
+        options: &["view", "azimuth", "elevation"],
+    },
+    Replaced {
+        by: |flags, _| {
+            let camera = &flags.camera;
+            camera.view.is_some() || camera.azimuth.is_some() || camera.elevation.is_some()
+        },
+        options: &["carm"],
+    },
+    // One lens replaces the other.
+    Replaced {
+        by: |flags, _| flags.camera.fov.is_some(),
+        options: &["ortho"],
+    },
+    Replaced {
+        by: |flags, _| flags.camera.ortho.is_some(),
+        options: &["fov"],
+    },
+];
+
+/// Whether the flags name another mode than the file's.
+pub(super) fn is_other_mode(flags: &SceneOptions, file: &SceneOptions) -> bool {
+    flags.picture.mode.is_some_and(|mode| mode != file.mode())
+}
+
+fn is_exact(options: &SceneOptions) -> bool {
+    options.sampling.sampling == Some(SamplingMethod::Exact)
+}
+
+fn is_adaptive(options: &SceneOptions) -> bool {
+    let method = options.picture.quad.map(|quad| quad.method());
+    method == Some(QuadratureMethod::Adaptive)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Args;
+
+    use super::*;
+    use crate::options::flag_names;
+
+    #[test]
+    fn what_is_replaced_is_an_option() {
+        let names = flag_names(&SceneOptions::augment_args(clap::Command::new("scene")));
+        for replaced in REPLACED {
+            for option in replaced.options {
+                assert!(names.iter().any(|name| name == option), "{option}");
+            }
+        }
+    }
+}

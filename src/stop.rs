@@ -45,7 +45,9 @@ pub fn end_at_once(say: impl Fn() -> ErrorKind + Send + 'static) -> Result<()> {
 /// One of the signals that [`listen`] hears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
+    /// The first signal, which asks for a stop.
     First,
+    /// Any later signal, which ends the process.
     Second,
 }
 

@@ -62,6 +62,7 @@ impl fmt::Display for Shard {
 /// The choice by `--shard`: a given share, or that of the environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
+    /// The share that the user wrote.
     Given(Shard),
     /// Taken from the environment, as set by the launcher that started this program.
     Auto,

@@ -30,6 +30,7 @@ pub enum ErrorMetric {
 }
 
 impl ErrorMetric {
+    /// All metrics, in the order in which they are listed to users.
     pub const ALL: [Self; 7] = [
         Self::Rmse,
         Self::Max,
@@ -114,6 +115,7 @@ impl ErrorBound {
         )))
     }
 
+    /// The metric that is bounded.
     pub fn metric(self) -> ErrorMetric {
         self.metric
     }

@@ -39,6 +39,7 @@ enum Named {
 /// One table of an array of tables in a TOML text that holds more than a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
+    /// The array's key.
     pub array: &'static str,
     /// The number of the part, from 0.
     pub nth: usize,

@@ -48,6 +48,7 @@ impl Setting {
         }
     }
 
+    /// The setting's name in tables.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -26,6 +26,7 @@ pub struct HardCase {
 /// A hard case's volume.
 #[derive(Debug)]
 pub struct HardVolume {
+    /// The volume, as scenes see it.
     pub volume: Volume,
     /// NRRD's name of the voxel type and little-endian voxels, where a [`Volume`] cannot hold them
     /// as they stand in the file: `volume` is then what reading that file gives.

@@ -37,8 +37,11 @@ pub fn error_scale(volume: &Volume) -> Scale {
 
 /// A picture and how wrong it is.
 pub struct Evaluation {
+    /// The picture, with the times of its passes.
     pub rendering: Rendering,
+    /// The errors against the reference.
     pub figures: Figures,
+    /// The picture's counters.
     pub counts: Counts,
 }
 

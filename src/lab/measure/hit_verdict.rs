@@ -13,6 +13,7 @@ use crate::volume::Volume;
 /// A renderer's answer: the first thing that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
+    /// What the ray meets: a surface, a cap, or nothing.
     pub kind: Kind,
     /// Distance from the ray's origin, mm; +∞: nothing.
     pub depth_mm: f64,
@@ -30,8 +31,11 @@ impl From<&RayResult> for Answer {
 /// How an answer compares with the reference's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HitVerdict {
-    /// The reference's answer, so many voxels from it along the ray.
-    Agrees { apart: f64 },
+    /// The answer is the reference's, to within [`HitJudge::APART_VOXELS`].
+    Agrees {
+        /// The distance of the two along the ray, in voxels of the smallest spacing.
+        apart: f64,
+    },
     /// Another answer, but the reference's own of a ray moved by at most [`HitJudge::NEAR_VOXELS`], or
     /// of the iso value that the field has so far away or within [`HitJudge::NEAR_VALUE`]: the ray is
     /// that near to a tangent of the surface, or begins that near to it.
@@ -40,8 +44,11 @@ pub enum HitVerdict {
     Missed,
     /// The reference meets nothing, the answer is a hit.
     Extra,
-    /// Both hit, but different things or not at the same place: so many voxels apart.
-    Displaced { apart: f64 },
+    /// Both hit, but different things or not at the same place.
+    Displaced {
+        /// The distance of the two along the ray, in voxels of the smallest spacing; +∞ for different things.
+        apart: f64,
+    },
 }
 
 /// Gives verdicts on the answers for rays of one volume and one surface.

@@ -37,6 +37,7 @@ struct Cache {
 
 /// A reference picture.
 pub struct ReferenceFrame {
+    /// The reference's picture.
     pub frame: Frame,
     /// Whether the reference had to be computed.
     pub computed: bool,

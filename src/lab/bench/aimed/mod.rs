@@ -30,10 +30,13 @@ use glam::DVec3;
 /// Answers of one aim.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
+    /// Rays that were cast.
     pub rays: u64,
     /// Rays for which the reference hits something.
     pub hits: u64,
+    /// Rays for which the reference hits something and the answer is nothing.
     pub missed: u64,
+    /// Rays for which the answer is a hit and the reference hits nothing.
     pub extra: u64,
     /// Hits at another place than the reference's, by more than [`HitJudge::APART_VOXELS`].
     pub displaced: u64,
@@ -81,6 +84,7 @@ impl Report {
     /// The most rays that are listed.
     const MAX_LISTED: usize = 12;
 
+    /// The tally over all aims.
     pub fn total(&self) -> Tally {
         self.tallies.into_iter().fold(Tally::default(), Tally::add)
     }

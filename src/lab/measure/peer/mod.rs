@@ -48,7 +48,7 @@ pub struct PeerScene {
     id: u64,
     size: ImageSize,
     tone: Tone,
-    /// The time of what is done once for the scene, such as extracting a mesh.
+    /// The time of what is done once for the scene, such as extracting a mesh, ms.
     pub ready_ms: f64,
     /// How its picture differs from what the scene says, other than by sampling.
     pub note: Option<String>,
@@ -57,9 +57,11 @@ pub struct PeerScene {
 /// The readiness of a peer to draw a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readiness {
+    /// The scene is prepared, and can be drawn.
     Ready(PeerScene),
     /// The peer cannot draw such a scene.
     Unsupported {
+        /// The peer's reason.
         why: String,
     },
 }
@@ -67,14 +69,16 @@ pub enum Readiness {
 /// The time of one picture, from the camera set to pixels that the host can read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeerTime {
+    /// The elapsed time, ms.
     pub ms: f64,
-    /// The processor time of all its threads.
+    /// The processor time of all the peer's threads, ms.
     pub cpu_ms: Option<f64>,
 }
 
 /// A picture of a peer.
 #[derive(Debug, Clone)]
 pub struct PeerFrame {
+    /// The time that the picture took.
     pub time: PeerTime,
     /// The picture: its colour, the display computed from it by the scene's tone curve, and the depth if
     /// the peer writes it.
@@ -122,6 +126,7 @@ impl Peer {
         &self.name
     }
 
+    /// The version that the peer gives of itself.
     pub fn version(&self) -> &str {
         &self.version
     }

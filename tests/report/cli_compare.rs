@@ -287,7 +287,7 @@ fn what_is_done_before_a_failure_stays() {
         repeats.collect::<Vec<_>>()
     };
     assert_eq!(timed("iso"), [2; 8]);
-    // Judged, not timed yet.
+    // Compared with the reference, but not timed yet.
     assert_eq!(timed("mip"), [0]);
 }
 

@@ -95,8 +95,8 @@ mod tests {
     fn a_stop_is_reported_in_place_of_a_failure_and_of_nothing_else() {
         let stopped = || Err(Error::stopped("stopped"));
         let failed = || Err::<u8, _>(Error::failed("no kernel"));
-        let told = over_failure(failed(), stopped).unwrap_err();
-        assert_eq!(told.kind(), ErrorKind::Stopped);
+        let reported = over_failure(failed(), stopped).unwrap_err();
+        assert_eq!(reported.kind(), ErrorKind::Stopped);
         assert_eq!(over_failure(Ok(3), stopped), Ok(3));
         // The control: no stop was requested, so that the fault is reported.
         assert_eq!(over_failure(failed(), || Ok(())), failed());

@@ -163,10 +163,10 @@ mod tests {
             ("%0999999999999999999999d.png", "so many digits"),
             ("..", "names no file"),
         ] {
-            let said = FrameNames::of(Path::new(pattern)).unwrap_err();
-            assert!(said.to_string().contains(why), "{pattern}: {said}");
-            assert!(said.hint_text().is_some());
-            assert_eq!(said.exit_code(), 2);
+            let error = FrameNames::of(Path::new(pattern)).unwrap_err();
+            assert!(error.to_string().contains(why), "{pattern}: {error}");
+            assert!(error.hint_text().is_some());
+            assert_eq!(error.exit_code(), 2);
         }
     }
 }

@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn what_is_no_bound_is_refused_in_one_sentence() {
-        for (text, said) in [
+        for (text, reason) in [
             ("rmse", "is not an error bound"),
             ("", "is not an error bound"),
             ("mse:1", "is not an error metric"),
@@ -256,7 +256,7 @@ mod tests {
             ("depth:1e7", "out of its domain"),
         ] {
             let refused = text.parse::<ErrorBound>().unwrap_err();
-            assert!(refused.to_string().contains(said), "{text}: {refused}");
+            assert!(refused.to_string().contains(reason), "{text}: {refused}");
             assert_eq!(refused.exit_code(), 2);
             assert!(!refused.to_string().contains('\n'));
         }

@@ -231,10 +231,10 @@ fn what_cannot_be_compared_is_an_error() {
     }
     let planes = ["display", "depth", "normal", "value"];
     for (error, plane) in compare(&good, &bare).into_iter().zip(planes) {
-        let said = error.unwrap().to_string();
+        let message = error.unwrap().to_string();
         assert!(
-            said.contains(plane) && said.contains("the picture"),
-            "{said}"
+            message.contains(plane) && message.contains("the picture"),
+            "{message}"
         );
     }
     let mut short = good.clone();
@@ -266,8 +266,8 @@ fn a_nan_pixel_is_named_not_skipped() {
                 value_error(a, b, 1.0).err(),
             ];
             for error in errors {
-                let said = error.unwrap().to_string();
-                assert!(said.contains("pixel 2,1"), "{said}");
+                let message = error.unwrap().to_string();
+                assert!(message.contains("pixel 2,1"), "{message}");
             }
         }
     }

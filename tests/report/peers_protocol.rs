@@ -171,11 +171,11 @@ fn what_a_peer_cannot_draw_it_says_and_goes_on() {
     let scene = scene_of(&volume, maximum());
     let mut peer = fake.start().unwrap();
     for _ in 0..2 {
-        let said = peer.prepare(&volume, &scene, "fine").unwrap();
+        let readiness = peer.prepare(&volume, &scene, "fine").unwrap();
         let expected = Readiness::Unsupported {
             why: "no such light".into(),
         };
-        assert_eq!(said, expected);
+        assert_eq!(readiness, expected);
     }
 
     let failing = r#"*'"scene"'*) echo '{"error":"out of memory"}' ;;"#;

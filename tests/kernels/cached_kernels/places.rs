@@ -6,22 +6,22 @@ use std::process::{Command, Output};
 
 use super::Place;
 
-fn said(output: &Output) -> String {
+fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Runs it; what it said, the picture being there.
+/// Runs it; what it printed on stderr, the picture being there.
 fn done(place: &Place, command: &mut Command) -> String {
     let output = command.output().unwrap();
     assert!(output.status.success(), "{output:?}");
     assert!(place.path("picture.png").exists());
     fs::remove_file(place.path("picture.png")).unwrap();
-    said(&output)
+    stderr_of(&output)
 }
 
 /// The folder in quotes that begins like this.
-fn named<'a>(said: &'a str, start: &str) -> Option<&'a Path> {
-    let mut quoted = said.split('\'').filter(|part| part.contains(start));
+fn named<'a>(messages: &'a str, start: &str) -> Option<&'a Path> {
+    let mut quoted = messages.split('\'').filter(|part| part.contains(start));
     quoted.next().map(Path::new)
 }
 

@@ -39,7 +39,7 @@ fn the_help_lists_every_experiment_and_has_an_example() {
 }
 
 #[test]
-fn wrong_usage_says_what_there_is() {
+fn wrong_usage_is_refused_with_what_there_is() {
     let place = Place::with_ball();
     place.write("quick.toml", "quick = true\n");
     place.write("both.toml", "quick = true\nfull = true\n");

@@ -74,7 +74,7 @@ fn lasting(rows: &[Value]) -> Vec<String> {
 }
 
 #[test]
-fn a_stopped_run_goes_on_where_it_was() {
+fn a_stopped_run_resumes_where_it_was() {
     let Some(device) = common::device_flag() else {
         return;
     };

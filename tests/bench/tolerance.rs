@@ -159,7 +159,7 @@ fn another_reference_is_noticed() {
 }
 
 #[test]
-fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_said_to_fail() {
+fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_the_failure_reported() {
     let options = options("mode = 'iso'\niso = '50%'\nsize = 96");
     let Some(choice) = choice_with_reference_of(&vessels(), &options, "psnr:200") else {
         return;
@@ -173,7 +173,7 @@ fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_said_to_fail() 
 }
 
 #[test]
-fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
+fn a_bound_is_refused_where_it_decides_nothing_or_contradicts() {
     let place = Place::with_ball();
     for (line, wanted) in [
         (

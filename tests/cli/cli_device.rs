@@ -327,7 +327,7 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
     );
     let stepped = place.json("s.json")["counts"]["samples"].as_u64().unwrap();
     assert!(stepped > 10 * samples, "{stepped}");
-    // The control: of like spacings nothing is said.
+    // The control: of like spacings nothing is reported.
     let messages = messages_of(&format!(
         "render blob.nrrd --mode dvr --size 16 -o c.exr {device}"
     ));
@@ -361,7 +361,7 @@ fn no_rule_shows_a_label_that_is_not_there() {
 }
 
 #[test]
-fn precomputed_gradients_say_what_they_cost_and_are_worth() {
+fn precomputed_gradients_report_their_cost_and_error() {
     let Some((place, device)) = place() else {
         return;
     };

@@ -212,7 +212,7 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
         "{messages}"
     );
     done("far", "replay ../moved/a.png -o b.png");
-    // Where it is said to be; the picture then says so too.
+    // Where the flag places it; the picture then names that place too.
     let output = replay(
         "work",
         "replay ../moved/a.png -o b.png --volume ../far/ball.nrrd",
@@ -342,9 +342,9 @@ fn a_scene_is_read_from_a_pipe_too() {
 }
 
 #[test]
-fn a_missing_folder_is_said_before_the_volume_is_read() {
+fn a_missing_folder_is_reported_before_the_volume_is_read() {
     let place = Place::empty();
-    // The volume is missing too; what is checked first is what is said.
+    // The volume is missing too; what is checked first is what is reported.
     let message = place.refused("render none.nrrd -o no/a.png --device reference", 74);
     assert!(message.contains("no/a.png"), "{message}");
     let message = place.refused("render none.nrrd -o a.png --device reference", 65);
@@ -353,7 +353,7 @@ fn a_missing_folder_is_said_before_the_volume_is_read() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_folder_that_takes_no_files_is_said_before_the_volume_is_read() {
+fn a_folder_that_takes_no_files_is_reported_before_the_volume_is_read() {
     let place = Place::empty();
     for line in [
         "render none.nrrd -o /proc/a.png",
@@ -389,7 +389,7 @@ fn a_picture_too_large_for_its_format_is_refused_before_rendering() {
 fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
     let place = Place::empty();
     std::fs::create_dir(place.path("a.tree.json")).unwrap();
-    // What is checked first is what is said: this tree cannot be grown either.
+    // What is checked first is what is reported: this tree cannot be grown either.
     let message = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 74);
     assert!(message.contains("a.tree.json"), "{message}");
     // The controls: another name has another tree, another kind has none.
@@ -400,7 +400,7 @@ fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_stopped_command_says_so_and_leaves_no_half_of_a_file() {
+fn a_stopped_command_reports_it_and_leaves_no_half_of_a_file() {
     let place = Place::with_ball();
     // Each takes longer than this test is patient.
     let reference = "--device reference --mode mean --size 3000";

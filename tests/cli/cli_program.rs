@@ -221,7 +221,7 @@ fn percentiles_are_order_statistics_of_the_voxels() {
 }
 
 #[test]
-fn defaults_chosen_for_the_user_are_said_in_one_line() {
+fn defaults_chosen_for_the_user_are_reported_in_one_line() {
     let place = Place::with_ball();
     let notes = |flags: &str| {
         let line = format!("render ball.nrrd -o a.png {flags} {REFERENCE}");

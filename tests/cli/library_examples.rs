@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use crate::cli_place::Place;
 use crate::common;
 
-/// A built example; `None`, said aloud, where this run built none.
+/// A built example; `None`, with a message, where this run built none.
 fn example(name: &str) -> Option<PathBuf> {
     // Beside the folder of the test programs.
     let test = std::env::current_exe().unwrap();

@@ -193,9 +193,9 @@ fn a_ball_has_radial_normals_in_an_oblique_anisotropic_volume() {
     }
 }
 
-/// What is said of precomputed gradients is what their normals show.
+/// What is reported of precomputed gradients is what their normals show.
 #[test]
-fn precomputed_gradients_say_how_far_off_they_are() {
+fn precomputed_gradients_report_how_far_off_they_are() {
     let volume = ball(edge);
     let mut before = [0.0; 3];
     for scale in [1, 2, 4, 8] {

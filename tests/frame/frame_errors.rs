@@ -137,7 +137,7 @@ fn the_percentile_of_a_hundred_depths_is_the_ninety_ninth() {
 }
 
 #[test]
-fn nothing_to_compare_is_said_and_passes_nothing() {
+fn nothing_to_compare_is_reported_and_passes_nothing() {
     let (hit, none) = (with_depth(&[1.0, 2.0]), with_depth(&[INF, INF]));
     let error = depth_error(&hit, &none, 1.0).unwrap();
     assert_eq!((error.missed, error.compared), (2, 0));

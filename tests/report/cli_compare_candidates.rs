@@ -267,7 +267,7 @@ fn a_comparison_that_is_passed_on_does_not_say_where_things_lay() {
 }
 
 #[test]
-fn long_work_in_a_pipe_says_what_is_being_done() {
+fn long_work_in_a_pipe_reports_what_is_being_done() {
     let Some(device) = common::device_flag() else {
         return;
     };

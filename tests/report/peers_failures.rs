@@ -49,7 +49,7 @@ fn a_setting_that_no_line_of_ours_can_name_is_refused() {
         let message = hello(name).start().err().unwrap().to_string();
         assert!(message.contains("control character"), "{message}");
     }
-    // The control: any other goes back as it was said.
+    // The control: any other goes back as it came.
     let peer = hello("step 0.5, \u{fc}ber").start().unwrap();
     assert_eq!(peer.settings("mip"), ["step 0.5, über"]);
 }

@@ -164,7 +164,7 @@ fn a_scene_is_sent_in_stored_values_and_linear_light() {
 }
 
 #[test]
-fn what_a_peer_cannot_draw_it_says_and_goes_on() {
+fn a_peer_reports_what_it_cannot_draw_and_stays_usable() {
     let unable = r#"*'"scene"'*) echo '{"supported":false,"why":"no such light"}' ;;"#;
     let fake = Fake::answering(&[LOAD, unable]);
     let volume = volume();

@@ -461,7 +461,7 @@ fn clip_planes_come_as_one_list_from_the_flags_or_from_the_file() {
     ] {
         assert!(refusal(wrong).contains("scene.toml:1"), "{wrong}");
     }
-    // What keeps nothing is said: the volume is a ball of 10 mm about 1,2,3.
+    // A plane that keeps nothing is noted: the volume is a ball of 10 mm about 1,2,3.
     let notes = |plane: &str| resolved(&flags(&["--iso", "1", "--clip-plane", plane])).notes;
     assert_eq!(
         notes("0,0,-2,-14.01"),

@@ -138,7 +138,7 @@ fn prepare_peer(place: &Place) {
 /// Runs an example: that it succeeds and leaves what its `-o` names.
 ///
 /// # Errors
-/// What it said, where it does not.
+/// What it printed, where it does not.
 fn run(place: &Place, example: &str) -> Result<(), String> {
     let mut words = shlex::split(example).ok_or("no shell takes it")?;
     let mut array = false;

@@ -102,7 +102,7 @@ fn colours_have_names() {
 }
 
 #[test]
-fn quiet_says_nothing_but_errors() {
+fn quiet_prints_nothing_but_errors() {
     let place = Place::with_ball();
     let line = format!("render ball.nrrd -o a.png {REFERENCE}");
     for (quiet, is_quiet) in [
@@ -132,7 +132,7 @@ fn quiet_says_nothing_but_errors() {
             "{command}"
         );
     }
-    // The control: an error is said.
+    // The control: an error is printed.
     let message = place.refused("render ball.nrrd -o a.png --quiet --mode x", 2);
     assert!(message.starts_with("error: "), "{message}");
     let message = place.refused("render none.nrrd -o a.png --quiet --device reference", 65);

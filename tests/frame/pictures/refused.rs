@@ -18,7 +18,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn webp_says_what_it_cannot_hold() {
+fn webp_reports_what_it_cannot_hold() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.webp");
     let size = ImageSize::new(16_384, 1).unwrap();

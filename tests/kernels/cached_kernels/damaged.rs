@@ -97,7 +97,7 @@ fn with_other_code(cached: &[u8]) -> Option<Vec<u8>> {
 
 #[cfg(target_arch = "x86_64")]
 #[test]
-fn a_cached_kernel_that_ends_the_process_says_so_and_is_removed() {
+fn a_cached_kernel_that_ends_the_process_is_reported_and_removed() {
     let Some(place) = Place::new() else { return };
     let own = place.rendered(&mut place.simple_command());
     fs::remove_file(place.path("picture.png")).unwrap();

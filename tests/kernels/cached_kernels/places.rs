@@ -1,4 +1,4 @@
-//! Where kernels are cached, where the driver builds, and what is said where neither can be.
+//! Where kernels are cached, where the driver builds, and what is reported where neither can be.
 
 use std::fs;
 use std::path::Path;
@@ -50,7 +50,7 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
         let folder = named(note, "angioray-driver-").unwrap();
         assert!(folder.is_absolute() && !folder.exists(), "{note}");
     }
-    // The control: where there is a folder nothing is said, and kernels are cached in it.
+    // The control: where there is a folder nothing is reported, and kernels are cached in it.
     let cache = place.path("cache");
     let printed = done(&place, &mut homeless(&cache));
     assert!(!printed.contains("not cached"), "{printed}");

@@ -158,7 +158,7 @@ fn stopped(
 }
 
 #[test]
-fn a_stopped_orbit_tells_what_it_made() {
+fn a_stopped_orbit_reports_what_it_made() {
     let place = place();
     let line = format!(
         "orbit v.nrrd --iso 70 --size 48 --frames 60 -o f/%02d.png --stats s.json {REFERENCE}"

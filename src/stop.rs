@@ -17,8 +17,10 @@ use crate::output::forget_unfinished;
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Listens for signals: the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second
-/// ends the process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as
-/// it is, so that `nohup` keeps its meaning.
+/// ends the process.
+///
+/// `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so that
+/// `nohup` keeps its meaning.
 ///
 /// # Errors
 /// The system lets no signals be caught.
@@ -75,8 +77,10 @@ pub fn requested() -> bool {
 }
 
 /// The outcome of work, or the stop if `check` fails because it is time to stop: a failure then is the
-/// stop, not a fault. A signal while kernels are built makes LLVM remove the files that it is writing,
-/// so that the build fails.
+/// stop, not a fault.
+///
+/// A signal while kernels are built makes LLVM remove the files that it is writing, so that the build
+/// fails.
 ///
 /// # Errors
 /// Those of `check` where the work failed, else the work's own.

@@ -76,7 +76,7 @@ impl FrameNames {
         }
     }
 
-    /// The folder that they lie in; empty for the working folder.
+    /// The folder that the frames lie in; empty for the working folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }

@@ -43,7 +43,7 @@ pub struct Part {
     pub array: &'static str,
     /// The number of the part, from 0.
     pub nth: usize,
-    /// Keys that are no options of a scene.
+    /// The keys of the table that are no options of a scene.
     pub without: &'static [&'static str],
 }
 

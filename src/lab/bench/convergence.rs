@@ -76,7 +76,7 @@ impl Smooth {
         })
     }
 
-    /// The field is the share of the path.
+    /// A field that rises linearly from 0 to 1 along the path.
     ///
     /// # Errors
     /// The volume is refused, as it is if there is no memory for it.

@@ -241,7 +241,7 @@ fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Resul
 pub struct Outcome {
     /// The figures, a row each.
     pub table: Table,
-    /// How they were measured.
+    /// The conditions under which they were measured.
     pub conditions: Conditions,
     /// The findings of the table, a sentence each.
     pub findings: Vec<String>,

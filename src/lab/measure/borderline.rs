@@ -116,7 +116,7 @@ impl<'a> Borderline<'a> {
         excused
     }
 
-    /// The number of pixels at which any was found.
+    /// The number of pixels at which a borderline answer was found.
     pub fn count(&self) -> usize {
         let borderline = self.known.iter().filter(|(_, is)| **is);
         let pixels: HashSet<usize> = borderline.map(|((pixel, ..), _)| *pixel).collect();
@@ -153,7 +153,9 @@ impl<'a> Borderline<'a> {
 
 /// Gives pixels of local maxima that differ from the reference's by more than `close` (physical) the
 /// reference's value where the reference itself gives theirs for a ray no farther away than
-/// [`HitChecker::NEAR_VOXELS`]: whether a ray dips between two maxima, no finite precision decides.
+/// [`HitChecker::NEAR_VOXELS`].
+///
+/// Whether a ray dips between two maxima, no finite precision decides.
 ///
 /// # Errors
 /// As [`Tracer::new`].

@@ -5,7 +5,7 @@ use super::Table;
 /// A page about one volume or one run of an experiment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
-    /// A few words, such as `aneurism: speed against error`.
+    /// The page's title, a few words such as `aneurism: speed against error`.
     pub title: String,
     /// A sentence or two for somebody who knows nothing of this: what is seen here, how to read it.
     pub summary: String,
@@ -107,9 +107,9 @@ pub struct ErrorMap {
 /// A bar of colours with figures under it. Places along it go from 0 to 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scale {
-    /// Place and sRGB colour, ascending; linear in sRGB between two.
+    /// Places and their sRGB colours, ascending; linear in sRGB between two.
     pub stops: Vec<(f64, [u8; 3])>,
-    /// Place and the error it stands for, at least at both ends.
+    /// Places and the errors they stand for, at least at both ends.
     pub ticks: Vec<(f64, f64)>,
 }
 
@@ -165,13 +165,13 @@ pub struct Axis {
 pub struct Point {
     /// The setting's name, unique among the points.
     pub label: String,
-    /// The family it belongs to, which has one colour and shape.
+    /// The family that the setting belongs to, which has one colour and shape.
     pub group: String,
     /// The place along the horizontal axis, in its unit.
     pub x: f64,
     /// The place along the vertical axis, in its unit.
     pub y: f64,
-    /// It is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
+    /// Whether the setting is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
     pub on_front: bool,
     /// More figures, as name and value, shown when the point is pointed at.
     pub details: Vec<(String, String)>,

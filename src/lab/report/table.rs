@@ -253,7 +253,7 @@ impl Table {
             && !cells.any(|cell| matches!(cell, Cell::Text(_)))
     }
 
-    /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure. Text that a
+    /// The table as CSV (RFC 4180), the keys in the first line; unrounded, empty where there is no figure. Text that a
     /// spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
     pub fn csv(&self) -> String {
         let keys = self.columns.iter().map(|column| column.key.to_owned());
@@ -265,7 +265,7 @@ impl Table {
         text
     }
 
-    /// An object a row; unrounded, `null` where there is no figure.
+    /// The table as JSON, an object a row; unrounded, `null` where there is no figure.
     pub fn json(&self) -> Value {
         let object = |row: &Vec<Cell>| {
             let pairs = self.columns.iter().zip(row).map(|(column, cell)| {

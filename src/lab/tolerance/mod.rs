@@ -80,7 +80,7 @@ pub struct Choice {
     pub met: bool,
     /// The error as verified, in the metric's unit.
     pub estimate: f64,
-    /// The error is at most this (psnr: at least) with [`CONFIDENCE`].
+    /// The upper confidence limit: the error is at most this (psnr: at least) with [`CONFIDENCE`].
     pub upper: f64,
     /// How much was rendered to verify the choice.
     pub verified: Verified,
@@ -90,7 +90,7 @@ pub struct Choice {
     pub cost: Cost,
 }
 
-/// Upon what a choice was verified.
+/// What a choice was verified on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
     /// The number of places of the camera.

@@ -27,7 +27,7 @@ pub use volumes::{Target, target};
 
 use glam::DVec3;
 
-/// Answers of one aim.
+/// The counts of answers for the rays of one aim.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// Rays that were cast.
@@ -51,7 +51,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Answers that are wrong.
+    /// The number of wrong answers.
     pub fn wrong(&self) -> u64 {
         self.missed + self.extra + self.displaced + self.wrongly_proven
     }
@@ -74,7 +74,7 @@ impl Tally {
 /// The tallies of all aims, and the first rays that went wrong.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Report {
-    /// One an aim, in the order of [`Aim::ALL`].
+    /// One tally per aim, in the order of [`Aim::ALL`].
     pub tallies: [Tally; Aim::ALL.len()],
     /// Details of wrong answers, for finding the fault: target number, ray, answer, verdict.
     pub wrong: Vec<String>,

@@ -50,7 +50,7 @@ pub struct PeerScene {
     tone: Tone,
     /// The time of what is done once for the scene, such as extracting a mesh, ms.
     pub ready_ms: f64,
-    /// How its picture differs from what the scene says, other than by sampling.
+    /// How the peer's picture differs from what the scene says, other than by sampling.
     pub note: Option<String>,
 }
 
@@ -136,15 +136,15 @@ impl Peer {
         &self.device
     }
 
-    /// The names of its settings for a mode, by the mode's name.
+    /// The names of the peer's settings for a mode, by the mode's name.
     pub fn settings(&self, mode: &str) -> Vec<String> {
         let able = |setting: &&OfferedSetting| setting.modes.iter().any(|m| m == mode);
         let settings = self.settings.iter().filter(able);
         settings.map(|setting| setting.name.clone()).collect()
     }
 
-    /// Gives it a volume in the place of the one before, whose scenes it forgets, and returns the time that it
-    /// reports, ms.
+    /// Gives the peer a volume in place of the one before, whose scenes it forgets, and returns the loading
+    /// time that it reports, ms.
     ///
     /// # Errors
     /// The temporary folder has no room; the peer fails.
@@ -185,7 +185,7 @@ impl Peer {
         }))
     }
 
-    /// Makes it drop all scenes, and what it holds for them.
+    /// Makes the peer drop all scenes, and what it holds for them.
     ///
     /// # Errors
     /// The peer fails.

@@ -171,7 +171,8 @@ pub struct Point {
     pub x: f64,
     /// The place along the vertical axis, in its unit.
     pub y: f64,
-    /// Whether the setting is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
+    /// Whether the setting is on the Pareto front: nothing more accurate is as fast, times within 10 %
+    /// counting as equal.
     pub on_front: bool,
     /// More figures, as name and value, shown when the point is pointed at.
     pub details: Vec<(String, String)>,

@@ -253,8 +253,9 @@ impl Table {
             && !cells.any(|cell| matches!(cell, Cell::Text(_)))
     }
 
-    /// The table as CSV (RFC 4180), the keys in the first line; unrounded, empty where there is no figure. Text that a
-    /// spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
+    /// The table as CSV (RFC 4180), the keys in the first line; unrounded, empty where there is no figure.
+    ///
+    /// Text that a spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
     pub fn csv(&self) -> String {
         let keys = self.columns.iter().map(|column| column.key.to_owned());
         let mut text = keys.collect::<Vec<_>>().join(",") + "\r\n";

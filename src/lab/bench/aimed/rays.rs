@@ -29,7 +29,7 @@ pub enum Aim {
 }
 
 impl Aim {
-    /// All aims, in the order of their discriminants and of [`Report::tallies`](super::Report::tallies).
+    /// All aims, in the order of their discriminants.
     pub const ALL: [Self; 7] = [
         Self::Corner,
         Self::Edge,

@@ -32,7 +32,7 @@ pub fn end(last_words: &[&[u8]], code: u8) -> ! {
 #[cfg(unix)]
 fn write_to_stderr(mut words: &[u8]) {
     while !words.is_empty() {
-        // SAFETY: the bytes are there, and as many as is said.
+        // SAFETY: the bytes are there, and as many as their length.
         let written = unsafe { libc::write(2, words.as_ptr().cast(), words.len()) };
         match usize::try_from(written) {
             Ok(count) if count > 0 => words = &words[count.min(words.len())..],

@@ -7,16 +7,18 @@
 use std::path::Path;
 
 /// Makes SIGABRT, SIGILL, SIGSEGV, SIGBUS and SIGFPE end the process with an `error:` line and the exit
-/// code of a resource that failed. For the program's `main`: a library leaves signals to the program
-/// that uses it.
+/// code of a resource that failed.
+///
+/// For the program's `main`: a library leaves signals to the program that uses it.
 pub fn catch() {
     #[cfg(unix)]
     signals::catch();
 }
 
-/// Puts the handlers of [`catch`] in place again, where they were: a driver's compiler installs its own when
-/// it is first used, which are reset as soon as one thread's signal arrives, so that another thread's
-/// ends the process without a word.
+/// Puts the handlers of [`catch`] in place again, where they were.
+///
+/// A driver's compiler installs its own when it is first used, which are reset as soon as one thread's
+/// signal arrives, so that another thread's ends the process without a word.
 pub fn catch_again() {
     #[cfg(unix)]
     signals::catch_again();

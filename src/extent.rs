@@ -18,7 +18,10 @@ impl Dims {
     /// The largest volume, in voxels.
     pub const MAX_VOXELS: u64 = 1 << 40;
 
-    /// Fails when an axis is empty or longer than [`Dims::MAX_AXIS`], or when the product exceeds
+    /// Makes dimensions of the numbers of voxels along x, y, z.
+    ///
+    /// # Errors
+    /// Input: an axis is empty or longer than [`Dims::MAX_AXIS`], or the product exceeds
     /// [`Dims::MAX_VOXELS`].
     pub fn new(dims: [u64; 3]) -> Result<Self> {
         let [nx, ny, nz] = dims;

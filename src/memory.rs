@@ -22,7 +22,7 @@ pub fn room<T>(len: usize, what: impl Display) -> Result<Vec<T>> {
     Ok(elements)
 }
 
-/// Room in `elements` for `more` than there are.
+/// Makes room in `elements` for `more` than there are.
 ///
 /// # Errors
 /// As [`room`].
@@ -69,8 +69,9 @@ fn may_fail<T>(request: impl FnOnce() -> T) -> T {
 }
 
 /// The system's allocator, but that a refused request that is not turned into an error ends the process
-/// with a sentence and the exit code of a resource that failed, not with a signal. For the program
-/// alone: a library leaves such things to the program that uses it.
+/// with a sentence and the exit code of a resource that failed, not with a signal.
+///
+/// For the program alone: a library leaves such things to the program that uses it.
 pub struct Allocator;
 
 // SAFETY: every request goes to the system's allocator unchanged.

@@ -273,10 +273,10 @@ mod tests {
         ];
         for (path, cause) in cases {
             let error = write_text(&path, "x").unwrap_err();
-            let said = error.to_string();
-            assert!(said.contains(cause), "{said}");
-            assert!(said.contains(path.to_str().unwrap()), "{said}");
-            assert!(!said.contains('\n'), "{said}");
+            let message = error.to_string();
+            assert!(message.contains(cause), "{message}");
+            assert!(message.contains(path.to_str().unwrap()), "{message}");
+            assert!(!message.contains('\n'), "{message}");
             assert_eq!(error.exit_code(), 74);
             assert_eq!(check_writable(&path).unwrap_err(), error);
         }
@@ -322,12 +322,12 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_folder_that_takes_no_files_is_not_called_missing() {
-        let said = |path: &str| check_writable(Path::new(path)).unwrap_err();
-        let proc = said("/proc/a.png");
+        let refusal = |path: &str| check_writable(Path::new(path)).unwrap_err();
+        let proc = refusal("/proc/a.png");
         assert!(proc.to_string().contains("takes no files"), "{proc}");
         assert_eq!(proc.hint_text(), None);
         // The control.
-        let missing = said("/proc/none/a.png");
+        let missing = refusal("/proc/none/a.png");
         assert!(missing.to_string().contains("does not exist"), "{missing}");
         assert!(missing.hint_text().is_some());
     }
@@ -338,8 +338,11 @@ mod tests {
         use std::os::unix::fs::FileTypeExt;
         write_text(Path::new("/dev/null"), "x").unwrap();
         let full = Path::new("/dev/full");
-        let said = write_text(full, "x").unwrap_err().to_string();
-        assert!(said.starts_with("/dev/full: cannot write: "), "{said}");
+        let message = write_text(full, "x").unwrap_err().to_string();
+        assert!(
+            message.starts_with("/dev/full: cannot write: "),
+            "{message}"
+        );
         for device in [Path::new("/dev/null"), full] {
             assert!(fs::metadata(device).unwrap().file_type().is_char_device());
         }

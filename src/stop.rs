@@ -17,8 +17,10 @@ use crate::output::forget_unfinished;
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Listens for signals: the first SIGINT or SIGTERM only sets what [`requested`] returns, and the second
-/// ends the process. `say` is called at either, and gives the exit code at the second. SIGHUP is left as
-/// it is, so that `nohup` keeps its meaning.
+/// ends the process.
+///
+/// `say` is called at either, and gives the exit code at the second. SIGHUP is left as it is, so that
+/// `nohup` keeps its meaning.
 ///
 /// # Errors
 /// The system lets no signals be caught.
@@ -45,7 +47,9 @@ pub fn end_at_once(say: impl Fn() -> ErrorKind + Send + 'static) -> Result<()> {
 /// One of the signals that [`listen`] hears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
+    /// The first signal, which asks for a stop.
     First,
+    /// Any later signal, which ends the process.
     Second,
 }
 
@@ -73,8 +77,10 @@ pub fn requested() -> bool {
 }
 
 /// The outcome of work, or the stop if `check` fails because it is time to stop: a failure then is the
-/// stop, not a fault. A signal while kernels are built makes LLVM remove the files that it is writing,
-/// so that the build fails.
+/// stop, not a fault.
+///
+/// A signal while kernels are built makes LLVM remove the files that it is writing, so that the build
+/// fails.
 ///
 /// # Errors
 /// Those of `check` where the work failed, else the work's own.
@@ -93,8 +99,8 @@ mod tests {
     fn a_stop_is_reported_in_place_of_a_failure_and_of_nothing_else() {
         let stopped = || Err(Error::stopped("stopped"));
         let failed = || Err::<u8, _>(Error::failed("no kernel"));
-        let told = over_failure(failed(), stopped).unwrap_err();
-        assert_eq!(told.kind(), ErrorKind::Stopped);
+        let reported = over_failure(failed(), stopped).unwrap_err();
+        assert_eq!(reported.kind(), ErrorKind::Stopped);
         assert_eq!(over_failure(Ok(3), stopped), Ok(3));
         // The control: no stop was requested, so that the fault is reported.
         assert_eq!(over_failure(failed(), || Ok(())), failed());

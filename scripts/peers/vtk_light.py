@@ -12,7 +12,7 @@ def add_light(renderer, toward_light, at_eye):
     """A distant light, or a headlight: at the eye itself, or along the view direction."""
     light = vtkLight()
     light.SetColor(1, 1, 1)
-    # Which is black unless it is said.
+    # Black by default.
     light.SetAmbientColor(1, 1, 1)
     if toward_light is None:
         light.SetLightTypeToHeadlight()

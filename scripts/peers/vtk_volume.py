@@ -1,6 +1,6 @@
 """Voxels as VTK holds them.
 
-The image has the volume's spacing alone. Where it lies in the world is said by a matrix of the prop
+The image has the volume's spacing alone. Where it lies in the world is given by a matrix of the prop
 that shows it, which all mappers honour; an image's own direction matrix is not by all.
 """
 import numpy as np

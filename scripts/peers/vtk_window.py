@@ -19,8 +19,8 @@ def opengl():
     window.SetOffScreenRendering(1)
     window.SetSize(8, 8)
     window.Render()
-    said = dict(line.split(":", 1) for line in window.ReportCapabilities().splitlines() if ":" in line)
-    parts = (said.get(f"OpenGL {what} string", "").strip() for what in ("renderer", "version"))
+    capabilities = dict(line.split(":", 1) for line in window.ReportCapabilities().splitlines() if ":" in line)
+    parts = (capabilities.get(f"OpenGL {what} string", "").strip() for what in ("renderer", "version"))
     return ", ".join(part for part in parts if part) or "unknown"
 
 

@@ -14,6 +14,7 @@ use super::{FinishedFrames, FrameNames};
 pub struct Shot<T> {
     /// The frame's index along the path.
     pub index: u32,
+    /// The picture, with the planes that its file holds.
     pub frame: Frame,
     /// The frame's scene, as the text that pictures carry.
     pub scene: String,
@@ -25,8 +26,10 @@ pub struct Shot<T> {
 pub struct Written<T> {
     /// The frame's index along the path.
     pub index: u32,
+    /// The caller's record of it, as it came in [`Shot::about`].
     pub about: T,
-    /// Encoding and writing it; in an animation the last one's takes in closing the file.
+    /// The time of encoding and writing the frame, ms; in an animation the last frame's includes closing
+    /// the file.
     pub encode_ms: f64,
 }
 
@@ -35,14 +38,18 @@ pub struct Written<T> {
 pub enum Destination {
     /// Every frame to a file of its own.
     Pictures {
+        /// The frames' file names.
         names: FrameNames,
+        /// The format of the pictures, and what is written of each frame.
         encoding: Encoding,
     },
     /// All frames to one file.
     Animation {
+        /// The animation's file.
         path: PathBuf,
+        /// The animation's format and frame rate.
         animation: Animation,
-        /// Where they are until the file is whole; `None` where the file is a device or a pipe.
+        /// Where the finished frames are until the file is whole; `None` where the file is a device or a pipe.
         finished: Option<FinishedFrames>,
     },
 }

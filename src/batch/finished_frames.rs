@@ -24,10 +24,12 @@ impl FinishedFrames {
         FrameNames::of(&PathBuf::from(folder).join("%06d.png")).map(Self)
     }
 
+    /// The names of the pictures.
     pub fn names(&self) -> &FrameNames {
         &self.0
     }
 
+    /// The folder in which the pictures lie.
     pub fn folder(&self) -> &Path {
         self.0.folder()
     }

@@ -76,7 +76,7 @@ impl FrameNames {
         }
     }
 
-    /// The folder that they lie in; empty for the working folder.
+    /// The folder that the frames lie in; empty for the working folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -163,10 +163,10 @@ mod tests {
             ("%0999999999999999999999d.png", "so many digits"),
             ("..", "names no file"),
         ] {
-            let said = FrameNames::of(Path::new(pattern)).unwrap_err();
-            assert!(said.to_string().contains(why), "{pattern}: {said}");
-            assert!(said.hint_text().is_some());
-            assert_eq!(said.exit_code(), 2);
+            let error = FrameNames::of(Path::new(pattern)).unwrap_err();
+            assert!(error.to_string().contains(why), "{pattern}: {error}");
+            assert!(error.hint_text().is_some());
+            assert_eq!(error.exit_code(), 2);
         }
     }
 }

@@ -14,7 +14,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All frames.
+    /// The share of a process that makes all frames.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
     /// The share of process `index`, counted from 0, of `count`.
@@ -30,7 +30,7 @@ impl Shard {
         Ok(Self { index, count })
     }
 
-    /// Which of how many processes it is.
+    /// The number of the process among all, from 0.
     pub fn index(self) -> u32 {
         self.index
     }
@@ -62,6 +62,7 @@ impl fmt::Display for Shard {
 /// The choice by `--shard`: a given share, or that of the environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
+    /// The share that the user wrote.
     Given(Shard),
     /// Taken from the environment, as set by the launcher that started this program.
     Auto,

@@ -23,7 +23,7 @@ use super::terminal::note;
 ///
 /// The volume is looked for where the picture says, beside the picture, and in the working folder, and
 /// must have the content that it had. On the same device the picture is the same, byte for byte; what
-/// OUT is encoded with is what IMAGE is, where both have one format and nothing else is said.
+/// OUT is encoded with is what IMAGE is, where both have one format and no flag says otherwise.
 #[derive(clap::Args)]
 #[command(override_usage = "angioray replay IMAGE -o OUT [OPTIONS]")]
 #[command(after_help = "Example:
@@ -123,7 +123,7 @@ impl ReplayArguments {
     }
 }
 
-/// The files that are written: a picture of the same format as it was, where nothing else is said.
+/// The files that are written: a picture of the same format as it was, where no flag says otherwise.
 fn as_it_was(mut files: Files, output: &OutputOptions, carried: &Carried) -> Result<Files> {
     if files.encoding.format != carried.format {
         return Ok(files);

@@ -63,7 +63,7 @@ impl Lines<'_> {
 /// Whether only errors are printed, once that is decided.
 static QUIET: OnceLock<bool> = OnceLock::new();
 
-/// Says whether nothing but errors is said from now on. The first call is the one that counts: flags are
+/// Sets whether only errors are printed from now on. The first call is the one that counts: flags are
 /// read before scene files.
 pub fn set_quiet(quiet: bool) {
     let _ = QUIET.set(quiet);
@@ -74,7 +74,7 @@ pub fn is_quiet() -> bool {
     QUIET.get().is_some_and(|quiet| *quiet)
 }
 
-/// A line for the user on stderr, unless nothing but errors is said.
+/// Prints a line for the user on stderr, unless only errors are printed.
 pub fn message(line: impl Display) {
     if !is_quiet() {
         say(line);

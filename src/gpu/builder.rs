@@ -26,13 +26,13 @@ pub(super) const ARGUMENT: &str = "--build-kernels";
 /// The folder where the driver of a builder caches what it builds.
 const DRIVERS: &str = "driver";
 
-/// The file of what the driver of a builder said.
-const SAID: &str = "said";
+/// The file of what the driver of a builder prints.
+const MESSAGES: &str = "messages";
 
 /// The time between two looks for a builder's answer.
 const POLL: Duration = Duration::from_millis(5);
 
-/// The most characters that are shown of what a driver said before it ended.
+/// The most characters that are shown of what a driver printed before it ended.
 const LAST_WORDS: usize = 400;
 
 /// A kernel to be built.
@@ -127,7 +127,7 @@ impl Builder {
             .env(POCL_FOLDER, &drivers)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
-            .stderr(File::create(folder.join(SAID)).ok()?);
+            .stderr(File::create(folder.join(MESSAGES)).ok()?);
         // Ctrl-C is for this process, which ends its builders.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
@@ -168,7 +168,7 @@ impl Builder {
     /// How the driver ended this process, and its last words.
     fn failure(&self, request: &Request, status: ExitStatus) -> Error {
         let [device, ..] = &request.identity;
-        let words = last_words(&self.folder.join(SAID));
+        let words = last_words(&self.folder.join(MESSAGES));
         let colon = if words.is_empty() { "" } else { ": " };
         let error = Error::resource(format!(
             "the driver of '{device}' failed while it built kernels/{} ({}){colon}{words}",
@@ -231,9 +231,9 @@ fn how_ended(status: ExitStatus) -> String {
     status.to_string()
 }
 
-/// The end of what was said, in one line.
-fn last_words(said: &Path) -> String {
-    let text = fs::read(said).unwrap_or_default();
+/// The end of what was printed, in one line.
+fn last_words(messages: &Path) -> String {
+    let text = fs::read(messages).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let line: String = lines.collect::<Vec<_>>().join("; ");
@@ -272,12 +272,12 @@ mod tests {
     #[test]
     fn the_last_words_are_one_short_line() {
         let folder = tempfile::tempdir().unwrap();
-        let said = folder.path().join(SAID);
-        assert_eq!(last_words(&said), "");
-        fs::write(&said, "a warning\n\n  error: no \u{1b}[1mld\n").unwrap();
-        assert_eq!(last_words(&said), "a warning; error: no  [1mld");
-        fs::write(&said, [&[b'x'; 5000][..], b"\nthe end\n"].concat()).unwrap();
-        let words = last_words(&said);
+        let messages = folder.path().join(MESSAGES);
+        assert_eq!(last_words(&messages), "");
+        fs::write(&messages, "a warning\n\n  error: no \u{1b}[1mld\n").unwrap();
+        assert_eq!(last_words(&messages), "a warning; error: no  [1mld");
+        fs::write(&messages, [&[b'x'; 5000][..], b"\nthe end\n"].concat()).unwrap();
+        let words = last_words(&messages);
         assert!(
             words.starts_with('…') && words.ends_with("x; the end"),
             "{words}"

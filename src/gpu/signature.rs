@@ -17,7 +17,7 @@ pub(super) struct Parameter {
     pub of: ParameterType,
 }
 
-/// The type of an argument; what is said of it is the element's name in OpenCL C.
+/// The type of an argument, with the element's name in OpenCL C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ParameterType {
     Buffer(&'static str),

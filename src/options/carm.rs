@@ -11,7 +11,9 @@ use crate::number_text::number;
 /// negative: the eye's azimuth and elevation from the anterior view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CArm {
+    /// The angle toward the patient's left, degrees: LAO is positive, RAO negative.
     pub azimuth_deg: f64,
+    /// The angle toward the head, degrees: CRA is positive, CAU negative.
     pub elevation_deg: f64,
 }
 

@@ -7,8 +7,11 @@ use crate::scene::enum_names::enum_names;
 /// The shading of a surface or a medium (`--shading`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shading {
+    /// No light: a surface or medium keeps its own colour.
     None,
+    /// Phong's reflection (1975).
     Phong,
+    /// Blinn's reflection (1977), by the half-way vector.
     BlinnPhong,
 }
 
@@ -26,10 +29,14 @@ enum_names!(Shading, "a shading": None = "none", Phong = "phong", BlinnPhong = "
 /// The method by which gradients are computed (`--gradient`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GradientMethod {
+    /// Central differences, over two voxel spacings.
     #[default]
     Central,
+    /// Forward differences, over one voxel spacing.
     Forward,
+    /// Central differences of fourth order, over four voxel spacings.
     FourthOrder,
+    /// Directions computed once for the volume and interpolated.
     Precomputed,
 }
 enum_names!(GradientMethod, "a gradient": Central = "central", Forward = "forward",
@@ -38,12 +45,15 @@ enum_names!(GradientMethod, "a gradient": Central = "central", Forward = "forwar
 /// Something that is on or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Switch {
+    /// Written `on`; in a scene file `true` too.
     On,
+    /// Written `off`; in a scene file `false` too.
     Off,
 }
 enum_names!(Switch, "a switch": On = "on", Off = "off");
 
 impl Switch {
+    /// Whether the switch is on.
     pub fn is_on(self) -> bool {
         self == Self::On
     }

@@ -30,6 +30,7 @@ pub enum ErrorMetric {
 }
 
 impl ErrorMetric {
+    /// All metrics, in the order in which they are listed to users.
     pub const ALL: [Self; 7] = [
         Self::Rmse,
         Self::Max,
@@ -114,6 +115,7 @@ impl ErrorBound {
         )))
     }
 
+    /// The metric that is bounded.
     pub fn metric(self) -> ErrorMetric {
         self.metric
     }
@@ -234,7 +236,7 @@ mod tests {
 
     #[test]
     fn what_is_no_bound_is_refused_in_one_sentence() {
-        for (text, said) in [
+        for (text, reason) in [
             ("rmse", "is not an error bound"),
             ("", "is not an error bound"),
             ("mse:1", "is not an error metric"),
@@ -254,7 +256,7 @@ mod tests {
             ("depth:1e7", "out of its domain"),
         ] {
             let refused = text.parse::<ErrorBound>().unwrap_err();
-            assert!(refused.to_string().contains(said), "{text}: {refused}");
+            assert!(refused.to_string().contains(reason), "{text}: {refused}");
             assert_eq!(refused.exit_code(), 2);
             assert!(!refused.to_string().contains('\n'));
         }

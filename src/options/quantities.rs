@@ -26,6 +26,7 @@ text_form!(AngleDeg, Zoom, SigmaMm, SigmaVoxels, GradientScale);
 pub struct Count<T = u32>(T);
 
 impl<T: Copy> Count<T> {
+    /// Returns the number, which is at least 1.
     pub fn get(self) -> T {
         self.0
     }

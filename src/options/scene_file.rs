@@ -39,10 +39,11 @@ enum Named {
 /// One table of an array of tables in a TOML text that holds more than a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
+    /// The array's key.
     pub array: &'static str,
     /// The number of the part, from 0.
     pub nth: usize,
-    /// Keys that are no options of a scene.
+    /// The keys of the table that are no options of a scene.
     pub without: &'static [&'static str],
 }
 

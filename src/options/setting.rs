@@ -48,11 +48,12 @@ impl Setting {
         }
     }
 
+    /// The setting's name in tables.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns what it says of how rays are followed.
+    /// Returns the options by which rays are followed.
     pub fn options(&self) -> &SceneOptions {
         &self.options
     }
@@ -62,7 +63,7 @@ impl Setting {
         self.options.clone().over(base.what())
     }
 
-    /// Returns it as flags, for the user to repeat.
+    /// Returns the setting as flags, for the user to repeat.
     pub fn flags(&self) -> String {
         let table = toml::Table::try_from(&self.options).unwrap_or_default();
         let flags = table.iter().map(|(key, value)| match value {

@@ -205,10 +205,10 @@ mod tests {
         assert_eq!(read("peer = 'a'").unwrap(), Some(vec!["a".into()]));
         let both = Some(vec!["a".into(), "b".into()]);
         assert_eq!(read("peer = ['a', 'b']").unwrap(), both);
-        let said = read("peer = 3").unwrap_err().to_string();
+        let message = read("peer = 3").unwrap_err().to_string();
         assert!(
-            said.contains("expected a string or a list of strings"),
-            "{said}"
+            message.contains("expected a string or a list of strings"),
+            "{message}"
         );
     }
 }

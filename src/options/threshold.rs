@@ -13,12 +13,14 @@ use crate::subject::Subject;
 /// voxels, or Otsu's threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
+    /// A physical value, as written.
     Value(f64),
     /// A share of the value range, 0 to 100 percent, as written.
     Percent(f64),
     /// The smallest voxel value that at least this percentage of the voxels do not exceed (the nearest
     /// rank), 0 to 100: 0 is the minimum.
     Percentile(f64),
+    /// Otsu's threshold of the voxels (Otsu 1979).
     Otsu,
 }
 
@@ -106,7 +108,9 @@ impl fmt::Display for Threshold {
 /// bright in the volume is dark in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowEnds {
+    /// The value shown black.
     pub black: Threshold,
+    /// The value shown white.
     pub white: Threshold,
 }
 

@@ -16,7 +16,9 @@ use crate::scene::TransferFile;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TransferChoice {
+    /// The name of a preset, or else of a file.
     Named(String),
+    /// The function itself, as a table of the scene file.
     Written(TransferFile),
 }
 

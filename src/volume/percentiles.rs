@@ -123,8 +123,8 @@ mod tests {
         let mut sorted = values.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |percent: f64| {
-            let at_least = percent * values.len() as f64 / 100.0;
-            let enough = |&index: &usize| (index + 1) as f64 >= at_least;
+            let min_count = percent * values.len() as f64 / 100.0;
+            let enough = |&index: &usize| (index + 1) as f64 >= min_count;
             sorted[(0..values.len()).find(enough).unwrap()]
         };
         percents.iter().map(|&percent| at(percent)).collect()

@@ -39,14 +39,17 @@ fn the_help_lists_every_experiment_and_has_an_example() {
 }
 
 #[test]
-fn wrong_usage_says_what_there_is() {
+fn wrong_usage_is_refused_with_what_there_is() {
     let place = Place::with_ball();
     place.write("quick.toml", "quick = true\n");
     place.write("both.toml", "quick = true\nfull = true\n");
     for line in ["bench", "bench vesels"] {
-        let said = place.refused(line, 2);
-        let (_, hint) = said.split_once("hint: ").unwrap();
-        assert!(EXPERIMENTS.iter().all(|name| hint.contains(name)), "{said}");
+        let message = place.refused(line, 2);
+        let (_, hint) = message.split_once("hint: ").unwrap();
+        assert!(
+            EXPERIMENTS.iter().all(|name| hint.contains(name)),
+            "{message}"
+        );
     }
     for (line, wanted) in [
         ("bench rays ball.nrrd", "takes no volumes"),
@@ -78,8 +81,8 @@ fn wrong_usage_says_what_there_is() {
         ("bench b1 --protocol still", "not a protocol"),
         ("bench b1 --restart", "no effect without '--output'"),
     ] {
-        let said = place.refused(line, 2);
-        assert!(said.contains(wanted), "{line}: {said}");
+        let message = place.refused(line, 2);
+        assert!(message.contains(wanted), "{line}: {message}");
     }
 }
 
@@ -89,13 +92,13 @@ fn what_cannot_be_read_or_written_fails_before_the_work() {
         return;
     };
     let place = Place::empty();
-    let said = place.refused(&format!("bench vessels none.nrrd {device}"), 65);
-    assert!(said.contains("none.nrrd"), "{said}");
+    let message = place.refused(&format!("bench vessels none.nrrd {device}"), 65);
+    assert!(message.contains("none.nrrd"), "{message}");
     place.done("phantom sphere -o ball.nrrd --size 16");
     for iso in ["-1", "201"] {
-        let said = place.refused(&format!("bench b1 ball.nrrd --iso {iso} {device}"), 2);
-        assert!(said.contains("lies outside"), "{said}");
-        assert!(said.contains("0 to 200"), "{said}");
+        let message = place.refused(&format!("bench b1 ball.nrrd --iso {iso} {device}"), 2);
+        assert!(message.contains("lies outside"), "{message}");
+        assert!(message.contains("0 to 200"), "{message}");
     }
     std::fs::create_dir_all(place.path("page/report.html")).unwrap();
     let output = place.run(&format!("bench convergence -o page {device}"));
@@ -160,9 +163,9 @@ fn vessels_end_in_a_table_and_leave_it_as_files() {
     assert!(page.contains("step 0.5, regula-falsi:5, probe"));
     assert!(page.contains("Surface: time against hits missed"));
     // What was run, for those who find the file.
-    let said = |key: &str| json["run"][key].as_str().unwrap().to_owned();
-    assert_eq!(said("effort"), "quick");
-    assert!(said("volumes").starts_with("ball (16x16x16"), "{json:#}");
+    let text_of = |key: &str| json["run"][key].as_str().unwrap().to_owned();
+    assert_eq!(text_of("effort"), "quick");
+    assert!(text_of("volumes").starts_with("ball (16x16x16"), "{json:#}");
     let line = json["command_line"].as_str().unwrap();
     assert!(line.starts_with("angioray bench vessels ball.nrrd --quick"));
     assert_eq!(json["size"], serde_json::json!([128, 128]));

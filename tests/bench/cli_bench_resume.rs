@@ -74,19 +74,22 @@ fn lasting(rows: &[Value]) -> Vec<String> {
 }
 
 #[test]
-fn a_stopped_run_goes_on_where_it_was() {
+fn a_stopped_run_resumes_where_it_was() {
     let Some(device) = common::device_flag() else {
         return;
     };
     let place = place();
     let line = |folder: &str| format!("bench traversals {VOLUMES} --quick -o {folder} {device}");
 
-    let (code, said) = stopped(&place, &line("out"), "out", 1, "TERM");
-    assert_eq!(code, 75, "{said}");
-    assert!(said.contains("error: stopped before the end; "), "{said}");
+    let (code, messages) = stopped(&place, &line("out"), "out", 1, "TERM");
+    assert_eq!(code, 75, "{messages}");
     assert!(
-        said.contains("hint: the same command resumes from there"),
-        "{said}"
+        messages.contains("error: stopped before the end; "),
+        "{messages}"
+    );
+    assert!(
+        messages.contains("hint: the same command resumes from there"),
+        "{messages}"
     );
     let first = place.json("out/results.json");
     assert_eq!(first["finished"], false);
@@ -97,11 +100,11 @@ fn a_stopped_run_goes_on_where_it_was() {
 
     // Ctrl-C does the same, and what was measured stays as it was.
     let units = first.len() / 5 + 2;
-    let (code, said) = stopped(&place, &line("out"), "out", units, "INT");
-    assert_eq!(code, 75, "{said}");
+    let (code, messages) = stopped(&place, &line("out"), "out", units, "INT");
+    assert_eq!(code, 75, "{messages}");
     assert!(
-        said.contains("units of work were measured before"),
-        "{said}"
+        messages.contains("units of work were measured before"),
+        "{messages}"
     );
     let second = rows(&place, "out");
     assert!(second.len() > first.len());
@@ -124,19 +127,19 @@ fn a_stopped_run_goes_on_where_it_was() {
 fn check_other_kernels(place: &Place, line: &str) {
     let kernels = place.path("kernels");
     crate::common::copy_kernels(&kernels);
-    let said_with_kernels = || {
+    let refused_with_kernels = || {
         let mut command = place.command(&format!("{line} --protocol static"));
         let output = command.env("ANGIORAY_KERNELS", &kernels).output().unwrap();
         stderr(&output)
     };
     // The control: the same kernels from elsewhere are no others.
-    let said = said_with_kernels();
-    assert!(said.contains("its protocol was"), "{said}");
+    let message = refused_with_kernels();
+    assert!(message.contains("its protocol was"), "{message}");
     let changed = kernels.join("lib/volume/cubic.clh");
     let text = std::fs::read_to_string(&changed).unwrap();
     std::fs::write(&changed, text + "// another\n").unwrap();
-    let said = said_with_kernels();
-    assert!(said.contains("its kernels was"), "{said}");
+    let message = refused_with_kernels();
+    assert!(message.contains("its kernels was"), "{message}");
 }
 
 /// Another build of the same version.
@@ -150,8 +153,8 @@ fn check_other_build(place: &Place, line: &str) {
     let mut command = Command::new(&other);
     let words = line.split_whitespace();
     let output = command.args(words).current_dir(place.path("")).output();
-    let said = stderr(&output.unwrap());
-    assert!(said.contains("its program was"), "{said}");
+    let messages = stderr(&output.unwrap());
+    assert!(messages.contains("its program was"), "{messages}");
 }
 
 #[test]
@@ -161,36 +164,39 @@ fn what_another_run_has_left_is_refused_in_a_sentence() {
     };
     let place = place();
     let line = format!("bench traversals {VOLUMES} --quick -o out {device}");
-    let (code, said) = stopped(&place, &line, "out", 1, "TERM");
-    assert_eq!(code, 75, "{said}");
+    let (code, messages) = stopped(&place, &line, "out", 1, "TERM");
+    assert_eq!(code, 75, "{messages}");
     let refused = |line: &str| {
         let output = place.run(&format!("{line} -o out {device}"));
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{line}: {messages}");
         assert!(output.stdout.is_empty());
-        let (_, said) = said.split_once("error: ").unwrap();
-        assert_eq!(said.lines().count(), 2, "{said}");
+        let (_, messages) = messages.split_once("error: ").unwrap();
+        assert_eq!(messages.lines().count(), 2, "{messages}");
         assert!(
-            said.contains("\nhint: ") && said.contains("--restart"),
-            "{said}"
+            messages.contains("\nhint: ") && messages.contains("--restart"),
+            "{messages}"
         );
-        said.to_owned()
+        messages.to_owned()
     };
-    let said = refused(&format!("bench traversals {VOLUMES} --full"));
+    let message = refused(&format!("bench traversals {VOLUMES} --full"));
     assert!(
-        said.contains("its effort was quick, this one's is full"),
-        "{said}"
+        message.contains("its effort was quick, this one's is full"),
+        "{message}"
     );
-    let said = refused(&format!("bench vessels {VOLUMES} --quick"));
-    assert!(said.contains("its experiment was traversals"), "{said}");
-    let said = refused(&format!(
+    let message = refused(&format!("bench vessels {VOLUMES} --quick"));
+    assert!(
+        message.contains("its experiment was traversals"),
+        "{message}"
+    );
+    let message = refused(&format!(
         "bench traversals {VOLUMES} --quick --protocol orbit"
     ));
-    assert!(said.contains("its protocol was"), "{said}");
+    assert!(message.contains("its protocol was"), "{message}");
     // The same name, another content.
     place.done("phantom gaussian -o bump.nrrd --size 20");
-    let said = refused(&format!("bench traversals {VOLUMES} --quick"));
-    assert!(said.contains("its volumes was"), "{said}");
+    let message = refused(&format!("bench traversals {VOLUMES} --quick"));
+    assert!(message.contains("its volumes was"), "{message}");
     place.done("phantom gaussian -o bump.nrrd --size 24");
     check_other_kernels(&place, &line);
     check_other_build(&place, &line);
@@ -209,9 +215,12 @@ fn rays_that_are_stopped_resume_and_end_as_if_they_never_were() {
     };
     let place = Place::empty();
     let line = |folder: &str| format!("bench rays --rays 300000 -o {folder} {device}");
-    let (code, said) = stopped(&place, &line("out"), "out", 1, "TERM");
-    assert_eq!(code, 75, "{said}");
-    assert!(said.contains("error: stopped before the end; "), "{said}");
+    let (code, messages) = stopped(&place, &line("out"), "out", 1, "TERM");
+    assert_eq!(code, 75, "{messages}");
+    assert!(
+        messages.contains("error: stopped before the end; "),
+        "{messages}"
+    );
     let all = |folder: &str| {
         rows(&place, folder).pop().unwrap()["rays"]
             .as_f64()
@@ -219,9 +228,9 @@ fn rays_that_are_stopped_resume_and_end_as_if_they_never_were() {
     };
     assert!((50_000.0..300_000.0).contains(&all("out")));
     let output = place.run(&line("out"));
-    let said = stderr(&output);
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("resumed: "), "{said}");
+    let messages = stderr(&output);
+    assert!(output.status.success(), "{messages}");
+    assert!(messages.contains("resumed: "), "{messages}");
     assert_eq!(all("out"), 300_000.0);
     place.done(&line("other"));
     assert_eq!(rows(&place, "out"), rows(&place, "other"));
@@ -236,8 +245,8 @@ fn what_an_older_run_has_found_is_not_taken_for_this_ones() {
     place.done(&format!("bench convergence -o out {device}"));
     assert!(place.path("out/report.html").exists());
     let line = format!("bench traversals {VOLUMES} --quick -o out {device}");
-    let (code, said) = stopped(&place, &line, "out", 1, "KILL");
-    assert_eq!(code, -1, "{said}");
+    let (code, messages) = stopped(&place, &line, "out", 1, "KILL");
+    assert_eq!(code, -1, "{messages}");
     assert!(!place.path("out/report.html").exists());
     let results = place.path("out/results.json");
     if results.exists() {
@@ -259,11 +268,11 @@ fn a_line_torn_by_a_crash_is_measured_again() {
     let bytes = std::fs::read(&path).unwrap();
     std::fs::write(&path, &bytes[..bytes.len() - 7]).unwrap();
     let output = place.run(&line);
-    let said = stderr(&output);
-    assert!(output.status.success(), "{said}");
+    let messages = stderr(&output);
+    assert!(output.status.success(), "{messages}");
     assert!(
-        said.contains("units of work were measured before"),
-        "{said}"
+        messages.contains("units of work were measured before"),
+        "{messages}"
     );
     assert_eq!(rows(&place, "out").len(), ROWS);
 }

@@ -159,7 +159,7 @@ fn another_reference_is_noticed() {
 }
 
 #[test]
-fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_said_to_fail() {
+fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_the_failure_reported() {
     let options = options("mode = 'iso'\niso = '50%'\nsize = 96");
     let Some(choice) = choice_with_reference_of(&vessels(), &options, "psnr:200") else {
         return;
@@ -173,7 +173,7 @@ fn where_nothing_keeps_the_bound_the_surest_setting_is_taken_and_said_to_fail() 
 }
 
 #[test]
-fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
+fn a_bound_is_refused_where_it_decides_nothing_or_contradicts() {
     let place = Place::with_ball();
     for (line, wanted) in [
         (
@@ -193,12 +193,12 @@ fn a_bound_is_refused_where_it_says_nothing_or_contradicts() {
         ("--max-error rmse", "is not an error bound"),
         ("--max-error mse:1", "is not an error metric"),
     ] {
-        let said = place.refused(&format!("render ball.nrrd -o x.png {line}"), 2);
-        assert!(said.contains(wanted), "{line}: {said}");
+        let message = place.refused(&format!("render ball.nrrd -o x.png {line}"), 2);
+        assert!(message.contains(wanted), "{line}: {message}");
     }
     place.write("both.toml", "max-error = 'rmse:0.01'\nstep = 1\n");
-    let said = place.refused("render ball.nrrd -o x.png --scene both.toml", 2);
-    assert!(said.contains("cannot be combined"), "{said}");
+    let message = place.refused("render ball.nrrd -o x.png --scene both.toml", 2);
+    assert!(message.contains("cannot be combined"), "{message}");
     assert!(!place.path("x.png").exists());
 }
 
@@ -228,10 +228,10 @@ fn what_was_chosen_is_reported_and_the_stored_scene_gives_the_same_picture() {
     );
     let output = place.run(&line);
     assert!(output.status.success(), "{}", stderr(&output));
-    let said = stderr(&output);
+    let messages = stderr(&output);
     assert!(
-        said.contains("note: max-error value:0.01: chose --"),
-        "{said}"
+        messages.contains("note: max-error value:0.01: chose --"),
+        "{messages}"
     );
     let stats = place.json("a.json");
     let stats_of_bound = &stats["max_error"];
@@ -244,12 +244,15 @@ fn what_was_chosen_is_reported_and_the_stored_scene_gives_the_same_picture() {
     let tried = stats_of_bound["tried"].as_array().unwrap();
     let all = candidates(Mode::Mip, 0.01).unwrap().concat();
     assert!((1..=all.len()).contains(&tried.len()), "{}", tried.len());
-    assert!(tried.iter().any(|one| one["setting"] == chosen), "{said}");
     assert!(
-        said.contains(&format!("; {} settings tried in ", tried.len())),
-        "{said}"
+        tried.iter().any(|one| one["setting"] == chosen),
+        "{messages}"
     );
-    assert!(said.contains(&format!("chose {chosen}:")), "{said}");
+    assert!(
+        messages.contains(&format!("; {} settings tried in ", tried.len())),
+        "{messages}"
+    );
+    assert!(messages.contains(&format!("chose {chosen}:")), "{messages}");
     assert!(stats["scene"]["max-error"].is_null());
 
     let metadata = read_metadata(&place.path("a.png")).unwrap();

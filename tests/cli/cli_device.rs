@@ -294,7 +294,7 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
     let Some((place, device)) = place() else {
         return;
     };
-    let said_by = |line: &str| {
+    let messages_of = |line: &str| {
         let output = place.run(line);
         assert!(output.status.success(), "{line}: {}", stderr(&output));
         stderr(&output)
@@ -304,10 +304,10 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
         "{} --mode dvr --size 16 --ortho 0.01 --stats s.json {device}",
         case("flatx.nrrd")
     );
-    let said = said_by(&format!("render {view} -o a.exr"));
+    let messages = messages_of(&format!("render {view} -o a.exr"));
     assert!(
-        said.contains("quad = adaptive:0.001") && said.contains("samples per ray"),
-        "{said}"
+        messages.contains("quad = adaptive:0.001") && messages.contains("samples per ray"),
+        "{messages}"
     );
     let samples = place.json("s.json")["counts"]["samples"].as_u64().unwrap();
     assert!(samples < 100_000, "{samples}");
@@ -320,18 +320,18 @@ fn unlike_spacings_are_seen_at_a_sane_cost_or_the_cost_is_reported() {
     }
     assert!(channel(&reference, "A").iter().any(|&a| a > 0.05));
     // Requested steps: as many as were reported, here coarse ones.
-    let said = said_by(&format!("render {view} -o a.exr --step 10"));
+    let messages = messages_of(&format!("render {view} -o a.exr --step 10"));
     assert!(
-        said.contains("samples per ray") && said.contains("in all"),
-        "{said}"
+        messages.contains("samples per ray") && messages.contains("in all"),
+        "{messages}"
     );
     let stepped = place.json("s.json")["counts"]["samples"].as_u64().unwrap();
     assert!(stepped > 10 * samples, "{stepped}");
-    // The control: of like spacings nothing is said.
-    let said = said_by(&format!(
+    // The control: of like spacings nothing is reported.
+    let messages = messages_of(&format!(
         "render blob.nrrd --mode dvr --size 16 -o c.exr {device}"
     ));
-    assert!(!said.contains("per ray"), "{said}");
+    assert!(!messages.contains("per ray"), "{messages}");
 }
 
 #[test]
@@ -361,7 +361,7 @@ fn no_rule_shows_a_label_that_is_not_there() {
 }
 
 #[test]
-fn precomputed_gradients_say_what_they_cost_and_are_worth() {
+fn precomputed_gradients_report_their_cost_and_error() {
     let Some((place, device)) = place() else {
         return;
     };
@@ -371,20 +371,22 @@ fn precomputed_gradients_say_what_they_cost_and_are_worth() {
         assert!(output.status.success(), "{}", stderr(&output));
         (stderr(&output), place.json("a.json"))
     };
-    let (said, stats) = render("a.png", "--gradient precomputed --gradient-scale 3");
+    let (messages, stats) = render("a.png", "--gradient precomputed --gradient-scale 3");
     // Directions at the voxels 0, 3, … 21 and 23, three numbers of two bytes each.
     assert_eq!(stats["memory"]["gradient_bytes"], 9 * 9 * 9 * 6);
     assert!(stats["times_ms"]["gradient"].as_f64().unwrap() > 0.0);
     assert_eq!(stats["scene"]["gradient-scale"], 3);
-    let note = said.lines().find(|l| l.starts_with("note: precomputed"));
-    let note = note.unwrap_or_else(|| panic!("{said}"));
+    let note = messages
+        .lines()
+        .find(|l| l.starts_with("note: precomputed"));
+    let note = note.unwrap_or_else(|| panic!("{messages}"));
     for part in ["0.0 MB", "mean ", "p99 ", "places of strong gradient"] {
         assert!(note.contains(part), "{note}");
     }
     // The controls: other gradients cost nothing and make another picture.
-    let (said, stats) = render("b.png", "--gradient central");
+    let (messages, stats) = render("b.png", "--gradient central");
     assert_eq!(stats["memory"]["gradient_bytes"], 0);
-    assert!(!said.contains("precomputed"), "{said}");
+    assert!(!messages.contains("precomputed"), "{messages}");
     assert_ne!(pixels(&place, "a.png"), pixels(&place, "b.png"));
 }
 
@@ -547,10 +549,10 @@ fn without_an_opencl_library_all_but_the_device_works() {
     }
     for line in ["render ball.nrrd -o b.png", "devices"] {
         let output = without(line);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(3), "{line}: {said}");
-        assert_eq!(said.matches("error: ").count(), 1, "{said}");
-        assert!(said.contains("install"), "{said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(3), "{line}: {messages}");
+        assert_eq!(messages.matches("error: ").count(), 1, "{messages}");
+        assert!(messages.contains("install"), "{messages}");
         assert!(output.stdout.is_empty() && !place.path("b.png").exists());
     }
     // The control: with the library the same line works or finds no device, for another reason.
@@ -609,23 +611,23 @@ fn a_device_that_is_too_small_is_reported_before_reading_and_building() {
     place.write("large.nrrd", &format!("{header}no gzip"));
     let line = format!("render large.nrrd -o a.png --iso 1 {device}");
     let output = by_a_small_device(&place, &line);
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(74), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(74), "{messages}");
     for part in [
         "error: large.nrrd: 1024x1024x512",
         "2147483648 bytes",
         "the device '",
     ] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(messages.contains(part), "{part}: {messages}");
     }
     // A picture that fits in no device: the volume is read by then, but nothing is built.
     let line = format!("render blob.nrrd -o a.png --mode mip --size 8000 {device}");
     let output = by_a_small_device(&place, &line);
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(74), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(74), "{messages}");
     assert!(
-        said.contains("8000x8000 pixels") && said.contains("smaller --size"),
-        "{said}"
+        messages.contains("8000x8000 pixels") && messages.contains("smaller --size"),
+        "{messages}"
     );
     assert_eq!(std::fs::read_dir(place.path("kernels")).unwrap().count(), 0);
     assert!(!place.path("a.png").exists());

@@ -16,11 +16,11 @@ const REFERENCE: &str = "--device reference --size 16";
 fn a_volume_is_never_written_over() {
     let place = Place::with_ball();
     let before = std::fs::read(place.path("ball.nrrd")).unwrap();
-    let said = place.refused(
+    let message = place.refused(
         "render ball.nrrd -o a.png --stats ball.nrrd --device reference",
         2,
     );
-    assert!(said.contains("ball.nrrd"), "{said}");
+    assert!(message.contains("ball.nrrd"), "{message}");
     assert_eq!(std::fs::read(place.path("ball.nrrd")).unwrap(), before);
     // Nor what else is read, nor one output by the other, by whatever path.
     place.write("own.toml", "points = [[1, 1, 1, 1, 0.5]]\n");
@@ -67,8 +67,8 @@ fn a_header_s_data_files_are_never_written_over() {
         ("b.nhdr", "slab1.raw"),
         ("b.nhdr", "slab2.raw"),
     ] {
-        let said = place.refused(&line(volume, &format!("./sub/{data}")), 2);
-        assert!(said.contains("this file is read"), "{said}");
+        let message = place.refused(&line(volume, &format!("./sub/{data}")), 2);
+        assert!(message.contains("this file is read"), "{message}");
     }
     assert_eq!(
         std::fs::read(place.path("sub/voxels.raw")).unwrap(),
@@ -96,8 +96,8 @@ fn both_halves_of_a_nifti_pair_are_the_volume() {
     std::fs::write(place.path("a.img"), [7; 64]).unwrap();
     for (volume, stats) in [("a.hdr", "a.img"), ("a.img", "a.hdr")] {
         let line = format!("render {volume} -o a.png --iso 8 --stats {stats} {REFERENCE}");
-        let said = place.refused(&line, 2);
-        assert!(said.contains("this file is read"), "{said}");
+        let message = place.refused(&line, 2);
+        assert!(message.contains("this file is read"), "{message}");
     }
     // The control.
     place.done(&format!(
@@ -205,14 +205,14 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
     // Nowhere, then in the working folder.
     std::fs::rename(place.path("sub/ball.nrrd"), place.path("far/ball.nrrd")).unwrap();
     let output = replay("work", "replay ../moved/a.png -o b.png");
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(65), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(65), "{messages}");
     assert!(
-        said.contains("its volume was not found") && said.contains("--volume"),
-        "{said}"
+        messages.contains("its volume was not found") && messages.contains("--volume"),
+        "{messages}"
     );
     done("far", "replay ../moved/a.png -o b.png");
-    // Where it is said to be; the picture then says so too.
+    // Where the flag places it; the picture then names that place too.
     let output = replay(
         "work",
         "replay ../moved/a.png -o b.png --volume ../far/ball.nrrd",
@@ -225,9 +225,9 @@ fn a_replay_finds_its_volume_by_path_beside_the_picture_and_in_the_working_folde
     place.done("phantom ramp -o other.nrrd --size 16");
     std::fs::copy(place.path("other.nrrd"), place.path("work/ball.nrrd")).unwrap();
     let output = replay("work", "replay ../moved/a.png -o c.png");
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(65), "{said}");
-    assert!(said.contains("not the volume that"), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(65), "{messages}");
+    assert!(messages.contains("not the volume that"), "{messages}");
     assert!(!place.path("work/c.png").exists());
     std::fs::copy(place.path("far/ball.nrrd"), place.path("moved/ball.nrrd")).unwrap();
     std::fs::remove_file(place.path("work/b.png")).unwrap();
@@ -300,15 +300,21 @@ fn what_carries_no_scene_is_refused_in_one_sentence() {
         ("cut.png", "not a readable PNG", "not a readable PNG"),
         ("none.png", "none.png", "none.png"),
     ] {
-        let said = place.refused(&format!("render ball.nrrd -o b.png --scene {file}"), 65);
-        assert!(said.contains(as_scene) && said.contains(file), "{said}");
-        let said = place.refused(&format!("replay {file} -o b.png"), 65);
-        assert!(said.contains(as_image) && said.contains(file), "{said}");
+        let message = place.refused(&format!("render ball.nrrd -o b.png --scene {file}"), 65);
+        assert!(
+            message.contains(as_scene) && message.contains(file),
+            "{message}"
+        );
+        let message = place.refused(&format!("replay {file} -o b.png"), 65);
+        assert!(
+            message.contains(as_image) && message.contains(file),
+            "{message}"
+        );
     }
-    let said = place.refused("info bare.png", 65);
-    assert!(said.contains("carries no scene"), "{said}");
-    let said = place.refused("replay -o b.png", 2);
-    assert!(said.contains("no picture was named"), "{said}");
+    let message = place.refused("info bare.png", 65);
+    assert!(message.contains("carries no scene"), "{message}");
+    let message = place.refused("replay -o b.png", 2);
+    assert!(message.contains("no picture was named"), "{message}");
     // The control.
     place.done("replay whole.png -o b.png");
 }
@@ -336,31 +342,31 @@ fn a_scene_is_read_from_a_pipe_too() {
 }
 
 #[test]
-fn a_missing_folder_is_said_before_the_volume_is_read() {
+fn a_missing_folder_is_reported_before_the_volume_is_read() {
     let place = Place::empty();
-    // The volume is missing too; what is checked first is what is said.
-    let said = place.refused("render none.nrrd -o no/a.png --device reference", 74);
-    assert!(said.contains("no/a.png"), "{said}");
-    let said = place.refused("render none.nrrd -o a.png --device reference", 65);
-    assert!(said.contains("none.nrrd"), "{said}");
+    // The volume is missing too; what is checked first is what is reported.
+    let message = place.refused("render none.nrrd -o no/a.png --device reference", 74);
+    assert!(message.contains("no/a.png"), "{message}");
+    let message = place.refused("render none.nrrd -o a.png --device reference", 65);
+    assert!(message.contains("none.nrrd"), "{message}");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_folder_that_takes_no_files_is_said_before_the_volume_is_read() {
+fn a_folder_that_takes_no_files_is_reported_before_the_volume_is_read() {
     let place = Place::empty();
     for line in [
         "render none.nrrd -o /proc/a.png",
         "render none.nrrd -o a.png --stats /proc/a.json",
         "phantom sphere -o /proc/a.nrrd",
     ] {
-        let said = place.refused(line, 74);
-        assert!(said.contains("'/proc' takes no files"), "{said}");
-        assert!(!said.contains("mkdir"), "{said}");
+        let message = place.refused(line, 74);
+        assert!(message.contains("'/proc' takes no files"), "{message}");
+        assert!(!message.contains("mkdir"), "{message}");
     }
     // The control: a missing folder has its cure.
-    let said = place.refused("render none.nrrd -o no/a.png", 74);
-    assert!(said.contains("mkdir -p 'no'"), "{said}");
+    let message = place.refused("render none.nrrd -o no/a.png", 74);
+    assert!(message.contains("mkdir -p 'no'"), "{message}");
 }
 
 #[test]
@@ -369,8 +375,11 @@ fn a_picture_too_large_for_its_format_is_refused_before_rendering() {
     let line = |name: &str, size: &str| {
         format!("render ball.nrrd -o {name} --iso 100 --device reference --size {size} --zoom 0.01")
     };
-    let said = place.refused(&line("a.webp", "16384x1"), 2);
-    assert!(said.contains("16383") && said.contains("16384x1"), "{said}");
+    let message = place.refused(&line("a.webp", "16384x1"), 2);
+    assert!(
+        message.contains("16383") && message.contains("16384x1"),
+        "{message}"
+    );
     // The controls: one less, and another format.
     place.done(&line("a.webp", "16383x1"));
     place.done(&line("a.jpg", "16384x1"));
@@ -380,18 +389,18 @@ fn a_picture_too_large_for_its_format_is_refused_before_rendering() {
 fn a_vessel_tree_s_place_is_checked_before_it_is_grown() {
     let place = Place::empty();
     std::fs::create_dir(place.path("a.tree.json")).unwrap();
-    // What is checked first is what is said: this tree cannot be grown either.
-    let said = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 74);
-    assert!(said.contains("a.tree.json"), "{said}");
+    // What is checked first is what is reported: this tree cannot be grown either.
+    let message = place.refused("phantom vessels -o a.nrrd --size 16 --radius -1", 74);
+    assert!(message.contains("a.tree.json"), "{message}");
     // The controls: another name has another tree, another kind has none.
-    let said = place.refused("phantom vessels -o b.nrrd --size 16 --radius -1", 2);
-    assert!(said.contains("radius"), "{said}");
+    let message = place.refused("phantom vessels -o b.nrrd --size 16 --radius -1", 2);
+    assert!(message.contains("radius"), "{message}");
     place.done("phantom sphere -o a.nrrd --size 8");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_stopped_command_says_so_and_leaves_no_half_of_a_file() {
+fn a_stopped_command_reports_it_and_leaves_no_half_of_a_file() {
     let place = Place::with_ball();
     // Each takes longer than this test is patient.
     let reference = "--device reference --mode mean --size 3000";
@@ -406,10 +415,10 @@ fn a_stopped_command_says_so_and_leaves_no_half_of_a_file() {
         wait_until_it_listens(&child);
         terminate(&child);
         let output = child.wait_with_output().unwrap();
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(75), "{line}: {said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(75), "{line}: {messages}");
         let stopped = "error: stopped before the end; no file is left half-written\nhint: ";
-        assert!(said.contains(stopped), "{line}: {said}");
+        assert!(messages.contains(stopped), "{line}: {messages}");
         assert_eq!(place.files(), before, "{line}");
     }
     // The control: without a stop it is written.

@@ -15,9 +15,9 @@ fn every_case_is_listed_in_the_help() {
 #[test]
 fn a_case_writes_its_volume_and_its_scenes_and_they_render() {
     let place = Place::empty();
-    let said = stderr(&place.run("phantom hardcase:thin-bright-sheet -o sheet.nrrd"));
-    assert!(said.contains("wrote sheet.nrrd: 33"), "{said}");
-    assert!(said.contains("and 1 more scenes"), "{said}");
+    let messages = stderr(&place.run("phantom hardcase:thin-bright-sheet -o sheet.nrrd"));
+    assert!(messages.contains("wrote sheet.nrrd: 33"), "{messages}");
+    assert!(messages.contains("and 1 more scenes"), "{messages}");
     let names: Vec<String> = place
         .files()
         .iter()
@@ -75,15 +75,15 @@ fn what_there_is_not_is_refused_with_what_there_is() {
         ("hardcase:types.u64", &["has no 'u64'", "i8"]),
         ("hardcase:tangent.1", &["it is one volume: write tangent"]),
     ] {
-        let said = place.refused(&format!("phantom {name} -o v.nrrd"), 2);
+        let message = place.refused(&format!("phantom {name} -o v.nrrd"), 2);
         for hint in hints {
-            assert!(said.contains(hint), "{name}: {said}");
+            assert!(message.contains(hint), "{name}: {message}");
         }
     }
     // What only made-up phantoms have.
     for flag in ["--size 9", "--seed 3", "--type f32"] {
-        let said = place.refused(&format!("phantom hardcase:tangent -o v.nrrd {flag}"), 2);
-        assert!(said.contains("hard case"), "{said}");
+        let message = place.refused(&format!("phantom hardcase:tangent -o v.nrrd {flag}"), 2);
+        assert!(message.contains("hard case"), "{message}");
     }
 }
 

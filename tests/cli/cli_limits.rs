@@ -30,13 +30,16 @@ fn texts_without_an_end_are_refused() {
             format!("render ball.nrrd -o a.png --mode dvr --tf {file} {REFERENCE}"),
             format!("compare ball.nrrd -o out --configs {file} --device reference"),
         ] {
-            let said = place.refused(&line, 65);
-            assert!(said.contains(word) && said.contains(file), "{line}: {said}");
+            let message = place.refused(&line, 65);
+            assert!(
+                message.contains(word) && message.contains(file),
+                "{line}: {message}"
+            );
         }
     }
     for volume in ["/dev/zero", "pipe"] {
-        let said = place.refused(&format!("info {volume}"), 65);
-        assert!(said.contains("regular file"), "{said}");
+        let message = place.refused(&format!("info {volume}"), 65);
+        assert!(message.contains("regular file"), "{message}");
     }
     // The control: a text of the allowed length.
     place.write("fine.toml", &"# nothing\n".repeat(100_000));
@@ -45,11 +48,11 @@ fn texts_without_an_end_are_refused() {
     ));
     let settings = "[[setting]]\nname = \"x\"\n".repeat(257);
     place.write("many.toml", &settings);
-    let said = place.refused(
+    let message = place.refused(
         "compare ball.nrrd -o out --configs many.toml --device reference",
         2,
     );
-    assert!(said.contains("256"), "{said}");
+    assert!(message.contains("256"), "{message}");
 }
 
 /// Runs the program until `file` is among what it has mapped.
@@ -79,13 +82,13 @@ fn a_volume_that_is_shortened_while_it_is_read_ends_the_program_in_words() {
     let child = until_mapped(&mut place.command(&format!("info {name}")), name);
     file.set_len(4096).unwrap();
     let output = child.wait_with_output().unwrap();
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(74), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(74), "{messages}");
     assert!(
-        said.contains(&format!("error: {name}: the file was shortened")),
-        "{said}"
+        messages.contains(&format!("error: {name}: the file was shortened")),
+        "{messages}"
     );
-    assert!(said.contains("hint: "), "{said}");
+    assert!(messages.contains("hint: "), "{messages}");
     assert!(output.stdout.is_empty());
 }
 
@@ -113,16 +116,27 @@ fn starved(place: &Place, line: &str, step: u64) -> u32 {
     let mut short = 0;
     loop {
         let output = limited(place, kib, line);
-        let said = stderr(&output);
+        let messages = stderr(&output);
         if output.status.success() {
             return short;
         }
-        assert_eq!(output.status.signal(), None, "{line}, {kib} KiB: {said}");
-        assert_eq!(output.status.code(), Some(74), "{line}, {kib} KiB: {said}");
-        assert!(said.contains("error: "), "{line}, {kib} KiB: {said}");
+        assert_eq!(
+            output.status.signal(),
+            None,
+            "{line}, {kib} KiB: {messages}"
+        );
+        assert_eq!(
+            output.status.code(),
+            Some(74),
+            "{line}, {kib} KiB: {messages}"
+        );
+        assert!(
+            messages.contains("error: "),
+            "{line}, {kib} KiB: {messages}"
+        );
         short += 1;
         kib += step;
-        assert!(kib < 2 << 20, "{line}: {said}");
+        assert!(kib < 2 << 20, "{line}: {messages}");
     }
 }
 

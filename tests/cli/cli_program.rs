@@ -123,15 +123,19 @@ fn an_iso_value_outside_the_range_shows_what_the_note_says() {
         let output = place.run(&format!(
             "render ball.nrrd -o a.png {flags} --stats a.json {REFERENCE}"
         ));
-        let said = stderr(&output);
+        let messages = stderr(&output);
         let note = format!("lies {side} the volume's values, 0 to 200: there is no surface");
-        assert!(said.contains(&note), "{flags}: {said}");
+        assert!(messages.contains(&note), "{flags}: {messages}");
         assert_eq!(
-            said.contains("only its caps are shown"),
+            messages.contains("only its caps are shown"),
             hits,
-            "{flags}: {said}"
+            "{flags}: {messages}"
         );
-        assert_eq!(said.contains("nothing is shown"), !hits, "{flags}: {said}");
+        assert_eq!(
+            messages.contains("nothing is shown"),
+            !hits,
+            "{flags}: {messages}"
+        );
         let shown = place.json("a.json")["counts"]["hits"].as_u64().unwrap();
         assert_eq!(shown > 0, hits, "{flags}: {shown}");
     }
@@ -157,12 +161,12 @@ fn the_certificate_is_of_surfaces_alone() {
     assert_eq!(render("--iso 100 --aov all --step 1"), (true, false));
     for mode in ["mip", "lmip", "minip", "mean", "dvr"] {
         assert_eq!(render(&format!("--mode {mode} --aov all")), (false, false));
-        let said = place.refused(
+        let message = place.refused(
             &format!("render ball.nrrd -o b.exr --mode {mode} --aov depth,certificate {REFERENCE}"),
             2,
         );
         let reason = format!("the layer 'certificate' cannot be combined with mode '{mode}'");
-        assert!(said.contains(&reason), "{said}");
+        assert!(message.contains(&reason), "{message}");
     }
     // A scene file's layer goes with its mode.
     place.write(
@@ -182,13 +186,16 @@ fn percentiles_are_order_statistics_of_the_voxels() {
     let window = |ends: &str| {
         let line = format!("render {raw} -o a.png --mode mip --window {ends} --stats a.json");
         let output = place.run(&format!("{line} {REFERENCE}"));
-        let said = stderr(&output);
-        assert!(output.status.success(), "{said}");
-        (place.json("a.json")["scene"]["window"].clone(), said)
+        let messages = stderr(&output);
+        assert!(output.status.success(), "{messages}");
+        (place.json("a.json")["scene"]["window"].clone(), messages)
     };
-    let (ends, said) = window("p10,p90");
+    let (ends, messages) = window("p10,p90");
     assert_eq!(ends, serde_json::json!([1, 9]));
-    assert!(said.contains("note: window = p10,p90 is 1,9\n"), "{said}");
+    assert!(
+        messages.contains("note: window = p10,p90 is 1,9\n"),
+        "{messages}"
+    );
     assert_eq!(window("p90.1,p10.1").0, serde_json::json!([250, 2]));
     assert_eq!(window("p0,p100").0, serde_json::json!([1, 250]));
     // A share of the value range is something else: 90 % of 1 to 250.
@@ -206,26 +213,26 @@ fn percentiles_are_order_statistics_of_the_voxels() {
     place.write("p.toml", "iso = 'p20'\n");
     assert_eq!(shown("--scene p.toml", "iso"), 2);
     // A window without a width says so.
-    let said = place.refused(
+    let message = place.refused(
         &format!("render {raw} -o b.png --mode mip --window p1,p2 {REFERENCE}"),
         2,
     );
-    assert!(said.contains("the window 1,1 is empty"), "{said}");
+    assert!(message.contains("the window 1,1 is empty"), "{message}");
 }
 
 #[test]
-fn defaults_chosen_for_the_user_are_said_in_one_line() {
+fn defaults_chosen_for_the_user_are_reported_in_one_line() {
     let place = Place::with_ball();
-    let said = |flags: &str| {
+    let notes = |flags: &str| {
         let line = format!("render ball.nrrd -o a.png {flags} {REFERENCE}");
         let text = stderr(&place.run(&line));
         text.lines().filter(|l| l.starts_with("note: ")).count()
     };
-    assert_eq!(said(""), 1);
-    assert_eq!(said("--iso 70"), 0);
-    assert_eq!(said("--iso otsu"), 1);
-    assert_eq!(said("--mode dvr"), 1);
-    assert_eq!(said("--mode dvr --tf mra"), 0);
+    assert_eq!(notes(""), 1);
+    assert_eq!(notes("--iso 70"), 0);
+    assert_eq!(notes("--iso otsu"), 1);
+    assert_eq!(notes("--mode dvr"), 1);
+    assert_eq!(notes("--mode dvr --tf mra"), 0);
 }
 
 // long: the table of cases.
@@ -320,8 +327,8 @@ fn wrong_usage_is_exit_2() {
         ("phantom sphere -o a.nrrd --size 4x4", "--size"),
         ("phantom sphere -o a.nrrd --type i8", "--type"),
     ] {
-        let said = place.refused(line, 2);
-        assert!(said.contains(reason), "{line}: {said}");
+        let message = place.refused(line, 2);
+        assert!(message.contains(reason), "{line}: {message}");
     }
 }
 
@@ -357,7 +364,7 @@ fn write_forged_archive(place: &Place, name: &str) {
 #[test]
 fn no_input_reaches_the_terminal_raw() {
     let place = Place::with_ball();
-    let said = |arguments: &[&str], code: i32| {
+    let printed = |arguments: &[&str], code: i32| {
         let output = place.command("").args(arguments).output().unwrap();
         let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {err}");
@@ -374,14 +381,14 @@ fn no_input_reaches_the_terminal_raw() {
         format!("{out}{err}")
     };
     // Fields, keys and values of files.
-    let units = said(&["info", &case("esc-units.nrrd")], 0);
+    let units = printed(&["info", &case("esc-units.nrrd")], 0);
     assert!(
         units.contains("mm\\u{1b}[31mRED\\u{1b}]0;owned\\u{7}"),
         "{units}"
     );
     let render = |more: &[&str]| {
         let line = [&["render", "ball.nrrd", "-o", "a.png"], more].concat();
-        said(&line, 2)
+        printed(&line, 2)
     };
     let size = render(&["--scene", &case("esc-scene.toml")]);
     assert!(size.contains("\\u{1b}[31mx"), "{size}");
@@ -392,12 +399,12 @@ fn no_input_reaches_the_terminal_raw() {
     assert!(key.contains("a\\u{1b}[31m\\nerror: b"), "{key}");
     // Members of an archive.
     write_forged_archive(&place, "a.npz");
-    said(&["info", "a.npz"], 65);
+    printed(&["info", "a.npz"], 65);
     // Names of files, there and not there.
     std::fs::copy(place.path("ball.nrrd"), place.path(FORGED)).unwrap();
-    assert!(said(&["info", FORGED], 0).contains(&format!("file           {SHOWN}\n")));
+    assert!(printed(&["info", FORGED], 0).contains(&format!("file           {SHOWN}\n")));
     let missing = format!("no{FORGED}");
-    assert!(said(&["info", &missing], 65).contains(SHOWN));
+    assert!(printed(&["info", &missing], 65).contains(SHOWN));
     // Arguments, which the parser quotes.
     for wrong in [
         &["render", "ball.nrrd", "--mode", FORGED][..],
@@ -406,7 +413,7 @@ fn no_input_reaches_the_terminal_raw() {
         &["bench", FORGED],
         &[FORGED],
     ] {
-        assert!(said(wrong, 2).contains(SHOWN), "{wrong:?}");
+        assert!(printed(wrong, 2).contains(SHOWN), "{wrong:?}");
     }
 }
 
@@ -471,8 +478,8 @@ fn unusable_inputs_are_exit_65_and_failed_outputs_74() {
             "a.png/",
         ),
     ] {
-        let said = place.refused(line, code);
-        assert!(said.contains(reason), "{line}: {said}");
+        let message = place.refused(line, code);
+        assert!(message.contains(reason), "{line}: {message}");
     }
 }
 
@@ -502,11 +509,11 @@ fn without_a_driver_all_but_the_device_works() {
     }
     for line in ["render ball.nrrd -o b.png", "devices"] {
         let output = without(line);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(3), "{line}: {said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(3), "{line}: {messages}");
         assert!(
-            said.starts_with("error: ") && said.contains("hint: "),
-            "{said}"
+            messages.starts_with("error: ") && messages.contains("hint: "),
+            "{messages}"
         );
         assert!(output.stdout.is_empty());
         assert!(!place.path("b.png").exists());

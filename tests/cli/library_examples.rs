@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use crate::cli_place::Place;
 use crate::common;
 
-/// A built example; `None`, said aloud, where this run built none.
+/// A built example; `None`, with a message, where this run built none.
 fn example(name: &str) -> Option<PathBuf> {
     // Beside the folder of the test programs.
     let test = std::env::current_exe().unwrap();
@@ -63,9 +63,9 @@ fn save_layers_saves_what_is_proven() {
     let Some((place, output)) = run("save_layers", &["head.nrrd", "head.exr"]) else {
         return;
     };
-    let said = text(&output);
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("of 262144 pixels hit"), "{said}");
+    let printed = text(&output);
+    assert!(output.status.success(), "{printed}");
+    assert!(printed.contains("of 262144 pixels hit"), "{printed}");
     let bytes = std::fs::read(place.path("head.exr")).unwrap();
     let holds = |name: &[u8]| bytes.windows(name.len()).any(|window| window == name);
     assert!(holds(b"certificate") && holds(b"depth"));
@@ -77,12 +77,15 @@ fn reference_error_reports_a_smaller_error_for_a_smaller_step() {
     let Some((_, output)) = run("reference_error", &["head.nrrd"]) else {
         return;
     };
-    let said = text(&output);
-    assert!(output.status.success(), "{said}");
+    let printed = text(&output);
+    assert!(output.status.success(), "{printed}");
     let rmse = |line: &str| -> f64 {
         let (_, rest) = line.split_once("rmse ").unwrap();
         rest.split(',').next().unwrap().parse().unwrap()
     };
-    let errors: Vec<f64> = said.lines().map(rmse).collect();
-    assert!(errors.len() == 2 && errors[1] < errors[0] / 4.0, "{said}");
+    let errors: Vec<f64> = printed.lines().map(rmse).collect();
+    assert!(
+        errors.len() == 2 && errors[1] < errors[0] / 4.0,
+        "{printed}"
+    );
 }

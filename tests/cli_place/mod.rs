@@ -64,19 +64,22 @@ impl Place {
     pub fn refused(&self, line: &str, code: i32) -> String {
         let before = self.files();
         let output = self.run(line);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{line}: {messages}");
         assert!(output.stdout.is_empty(), "{line}");
-        let errors = said.lines().filter(|l| l.starts_with("error: ")).count();
-        assert_eq!(errors, 1, "{line}: {said}");
+        let errors = messages
+            .lines()
+            .filter(|l| l.starts_with("error: "))
+            .count();
+        assert_eq!(errors, 1, "{line}: {messages}");
         let known = ["error: ", "hint: ", "note: "];
-        let stray = said
+        let stray = messages
             .lines()
             .find(|l| !known.iter().any(|k| l.starts_with(k)));
         assert_eq!(stray, None, "{line}");
-        assert!(!said.contains('\u{1b}'), "{line}: {said:?}");
+        assert!(!messages.contains('\u{1b}'), "{line}: {messages:?}");
         assert_eq!(self.files(), before, "{line}");
-        said
+        messages
     }
 
     pub fn files(&self) -> Vec<PathBuf> {

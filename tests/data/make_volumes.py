@@ -7,8 +7,8 @@ Every volume is the same ramp, 5 x 4 x 3 voxels:
 
     voxel(x, y, z) = x + 10 y + 100 z + offset,   frame t of a series: + 1000 t (or + 1 t in u8)
 
-so that a swapped axis, byte or frame cannot go unseen. What a fixture is for is said where it is
-made; what it must read as is said in tests/readers/. Written by SimpleITK 2.5, nibabel 5.4,
+so that a swapped axis, byte or frame cannot go unseen. What a fixture is for stands where it is
+made; what it must read as stands in tests/readers/. Written by SimpleITK 2.5, nibabel 5.4,
 pynrrd 1.1, numpy 2.4; headers that none of them can write (skips, lists, patterns) are spelled out
 here in the formats' own words.
 """

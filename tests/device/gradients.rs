@@ -193,9 +193,9 @@ fn a_ball_has_radial_normals_in_an_oblique_anisotropic_volume() {
     }
 }
 
-/// What is said of precomputed gradients is what their normals show.
+/// What is reported of precomputed gradients is what their normals show.
 #[test]
-fn precomputed_gradients_say_how_far_off_they_are() {
+fn precomputed_gradients_report_how_far_off_they_are() {
     let volume = ball(edge);
     let mut before = [0.0; 3];
     for scale in [1, 2, 4, 8] {
@@ -224,7 +224,7 @@ fn precomputed_gradients_say_how_far_off_they_are() {
         .render(&ball_scene(&volume, Gradient::Central), wanted)
         .unwrap();
     assert_eq!(central.gradients, None);
-    let mut said_before = 0.0;
+    let mut reported_before = 0.0;
     for scale in [2, 4] {
         let scene = ball_scene(&volume, precomputed(scale, 0.0));
         let rendering = renderer.render(&scene, wanted).unwrap();
@@ -240,16 +240,16 @@ fn precomputed_gradients_say_how_far_off_they_are() {
             .map(|[a, b]| angle_deg(a, b))
             .collect();
         let mean = angles.iter().sum::<f64>() / angles.len() as f64;
-        let said = figures.angle.unwrap().mean_deg;
-        println!("| ball, device | {scale} | said {said:.3}° | seen {mean:.3}° |");
+        let reported = figures.angle.unwrap().mean_deg;
+        println!("| ball, device | {scale} | reported {reported:.3}° | seen {mean:.3}° |");
         // The surface lies in the middle of the places.
         assert!(
-            (0.4..2.5).contains(&(mean / said)),
-            "{scale}: {mean}, {said}"
+            (0.4..2.5).contains(&(mean / reported)),
+            "{scale}: {mean}, {reported}"
         );
-        // The control: what was said of the scale before does not fit.
-        assert!(mean / said_before > 2.5 && mean > 0.01);
-        said_before = said;
+        // The control: what was reported of the scale before does not fit.
+        assert!(mean / reported_before > 2.5 && mean > 0.01);
+        reported_before = reported;
     }
     // A picture without normals needs none.
     let mut bare = ball_scene(&volume, precomputed(2, 0.0));

@@ -271,11 +271,11 @@ fn files_hold_what_the_map_says() {
         found,
         [("error.V".to_owned(), error), ("state.V".to_owned(), state)]
     );
-    let said = read_metadata(&path).unwrap();
+    let metadata = read_metadata(&path).unwrap();
     for pair in [("quantity", "depth"), ("unit", "voxels")] {
         assert!(
-            said.contains(&(pair.0.to_owned(), pair.1.to_owned())),
-            "{said:?}"
+            metadata.contains(&(pair.0.to_owned(), pair.1.to_owned())),
+            "{metadata:?}"
         );
     }
     // A folder that is not there leaves nothing behind and is named.
@@ -345,9 +345,9 @@ fn what_cannot_be_mapped_is_an_error() {
         let of = |a: &Frame, b: &Frame| ErrorMap::new(quantity, a, b, SCALE);
         assert!(of(&good, &good).is_ok());
         assert!(of(&good, &row(5)).is_err() && of(&bare, &good).is_err());
-        for said in [of(&good, &bad), of(&bad, &good)] {
-            let said = said.unwrap_err().to_string();
-            assert!(said.contains("pixel 2,0"), "{said}");
+        for outcome in [of(&good, &bad), of(&bad, &good)] {
+            let message = outcome.unwrap_err().to_string();
+            assert!(message.contains("pixel 2,0"), "{message}");
         }
         let mut short = of(&good, &good).unwrap();
         short.entries.pop();

@@ -137,7 +137,7 @@ fn the_percentile_of_a_hundred_depths_is_the_ninety_ninth() {
 }
 
 #[test]
-fn nothing_to_compare_is_said_and_passes_nothing() {
+fn nothing_to_compare_is_reported_and_passes_nothing() {
     let (hit, none) = (with_depth(&[1.0, 2.0]), with_depth(&[INF, INF]));
     let error = depth_error(&hit, &none, 1.0).unwrap();
     assert_eq!((error.missed, error.compared), (2, 0));
@@ -231,10 +231,10 @@ fn what_cannot_be_compared_is_an_error() {
     }
     let planes = ["display", "depth", "normal", "value"];
     for (error, plane) in compare(&good, &bare).into_iter().zip(planes) {
-        let said = error.unwrap().to_string();
+        let message = error.unwrap().to_string();
         assert!(
-            said.contains(plane) && said.contains("the picture"),
-            "{said}"
+            message.contains(plane) && message.contains("the picture"),
+            "{message}"
         );
     }
     let mut short = good.clone();
@@ -266,8 +266,8 @@ fn a_nan_pixel_is_named_not_skipped() {
                 value_error(a, b, 1.0).err(),
             ];
             for error in errors {
-                let said = error.unwrap().to_string();
-                assert!(said.contains("pixel 2,1"), "{said}");
+                let message = error.unwrap().to_string();
+                assert!(message.contains("pixel 2,1"), "{message}");
             }
         }
     }

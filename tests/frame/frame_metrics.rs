@@ -357,14 +357,17 @@ fn what_cannot_be_compared_is_an_error() {
     for figure in [ssim as Figure, flip] {
         assert!(figure(&good, &good).unwrap().is_some());
         assert!(figure(&good, &turned).is_err());
-        let said = figure(&good, &bare).unwrap_err().to_string();
-        assert!(said.contains("the picture has no display plane"), "{said}");
+        let message = figure(&good, &bare).unwrap_err().to_string();
+        assert!(
+            message.contains("the picture has no display plane"),
+            "{message}"
+        );
         for poison in [f32::NAN, f32::INFINITY] {
             let mut bad = good.clone();
             bad.display.as_mut().unwrap()[12 * 3 + 4][2] = poison;
             for (a, b) in [(&good, &bad), (&bad, &good)] {
-                let said = figure(a, b).unwrap_err().to_string();
-                assert!(said.contains("pixel 4,3"), "{said}");
+                let message = figure(a, b).unwrap_err().to_string();
+                assert!(message.contains("pixel 4,3"), "{message}");
             }
         }
     }

@@ -51,17 +51,17 @@ pub fn assert_caught(name: &str, file: &str, changes: &[(&str, &str)]) {
         .env("ANGIORAY_KERNELS", folder.path())
         .output()
         .unwrap();
-    let said = [output.stdout, output.stderr].concat();
-    let said = String::from_utf8_lossy(&said);
+    let printed = [output.stdout, output.stderr].concat();
+    let printed = String::from_utf8_lossy(&printed);
     assert!(
-        said.contains("running 1 test"),
-        "there is no test {name}: {said}"
+        printed.contains("running 1 test"),
+        "there is no test {name}: {printed}"
     );
     assert!(
-        !output.status.success() && said.contains(CAUGHT),
-        "{name} does not catch {changes:?} in {file}: {said}"
+        !output.status.success() && printed.contains(CAUGHT),
+        "{name} does not catch {changes:?} in {file}: {printed}"
     );
-    let first = said.lines().find(|line| line.contains(CAUGHT));
+    let first = printed.lines().find(|line| line.contains(CAUGHT));
     println!("caught {changes:?}: {}", first.unwrap_or_default());
 }
 

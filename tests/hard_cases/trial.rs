@@ -4,7 +4,7 @@ use angioray::Subject;
 use angioray::frame::{DEPTH, Frame, KIND, Kind, NORMAL, VALUE, Wanted};
 use angioray::gpu::Device;
 use angioray::lab::hardcases::HardCase;
-use angioray::lab::measure::{Answer, HitJudge, HitVerdict};
+use angioray::lab::measure::{Answer, HitChecker, HitVerdict};
 use angioray::octree::{Leaf, Octree};
 use angioray::options::SceneOptions;
 use angioray::progress::Silent;
@@ -286,7 +286,7 @@ struct Verdicts {
 }
 
 fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Frame) -> Verdicts {
-    let judge = HitJudge::new(volume, scene).unwrap();
+    let checker = HitChecker::new(volume, scene).unwrap();
     let depth = frame.plane(DEPTH).unwrap();
     let (kind, kind_expected) = (frame.plane(KIND).unwrap(), expected.plane(KIND).unwrap());
     let mut counts = Verdicts::default();
@@ -308,7 +308,7 @@ fn surface_verdicts(volume: &Volume, scene: &Scene, expected: &Frame, frame: &Fr
             0.0
         };
         let ray = seen.ray(pixel);
-        match judge.verdict(ray, judge.reference(ray), answer, resolution_mm) {
+        match checker.verdict(ray, checker.reference(ray), answer, resolution_mm) {
             HitVerdict::Agrees { apart } => counts.max_apart = counts.max_apart.max(apart),
             HitVerdict::Borderline => counts.borderline += 1,
             HitVerdict::Missed | HitVerdict::Extra => counts.wrong += 1,

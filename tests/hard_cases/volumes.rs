@@ -87,7 +87,7 @@ fn types() {
     check("volumes::types", "types", |_| Vec::new(), &[eight_bits]);
 }
 
-/// Their files, written as `angioray phantom` does, give the volumes they are said to give.
+/// Their files, written as `angioray phantom` does, give the volumes that they should.
 #[test]
 fn files_of_all_types_are_read_as_they_should_be() {
     if is_mutant() {
@@ -217,7 +217,7 @@ fn orientations() {
             orientation_of(member)
         );
         if count == 3 {
-            let untold = Geometry::new(
+            let unoriented = Geometry::new(
                 DVec3::new(3.0, -4.0, 5.0),
                 DMat3::IDENTITY,
                 stored.geometry().spacing_mm(),
@@ -225,17 +225,17 @@ fn orientations() {
             let Voxels::U8(voxels) = stored.voxels() else {
                 panic!("made as u8");
             };
-            let untold = Volume::new(
+            let unoriented = Volume::new(
                 stored.dims(),
                 Voxels::from(voxels.to_vec()),
-                untold.unwrap(),
+                unoriented.unwrap(),
                 Rescale::IDENTITY,
                 NonFinite::Refuse,
             );
-            let found = differs(&untold.unwrap(), count);
+            let found = differs(&unoriented.unwrap(), count);
             assert!(
                 found.iter().all(Option::is_some),
-                "orientation {member} untold: {found:?}"
+                "orientation {member} left out: {found:?}"
             );
         }
     }

@@ -114,11 +114,11 @@ impl Under {
             command.env("ANGIORAY_KERNELS", kernels);
         }
         let output = command.output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{command:?}: {said}");
+        let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{command:?}: {messages}");
         assert!(
-            said.contains("Oclgrind"),
-            "{command:?} ran elsewhere: {said}"
+            messages.contains("Oclgrind"),
+            "{command:?} ran elsewhere: {messages}"
         );
         std::fs::read_to_string(log).unwrap_or_default()
     }

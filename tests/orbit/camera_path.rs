@@ -149,14 +149,14 @@ fn about_up_it_turns_as_azimuth_does_and_about_z_as_a_c_arm() {
 #[test]
 fn axes_and_numbers_that_make_no_orbit_are_refused() {
     for axis in ["", "w", "0,0,0", "1,2", "nan,0,1", "upward", "1,2,3,4"] {
-        let said = axis.parse::<OrbitAxis>().unwrap_err();
-        assert!(said.to_string().contains("is not an axis"), "{said}");
-        assert_eq!(said.exit_code(), 2);
+        let error = axis.parse::<OrbitAxis>().unwrap_err();
+        assert!(error.to_string().contains("is not an axis"), "{error}");
+        assert_eq!(error.exit_code(), 2);
     }
     for wrong in ["0", "1000001", "4000000000", "5000000000", "-1", "many"] {
-        let said = wrong.parse::<FrameCount>().unwrap_err();
-        assert!(said.to_string().contains("there must be 1 to"), "{said}");
-        assert_eq!(said.exit_code(), 2);
+        let error = wrong.parse::<FrameCount>().unwrap_err();
+        assert!(error.to_string().contains("there must be 1 to"), "{error}");
+        assert_eq!(error.exit_code(), 2);
     }
     let three = "3".parse().unwrap();
     let made = |degrees| Orbit::new(seen("").scene.camera, OrbitAxis::Up, degrees, three);

@@ -23,7 +23,7 @@ fn refusal(name: &str) -> String {
 }
 
 #[test]
-fn what_is_not_supported_is_said() {
+fn what_is_not_supported_is_reported() {
     for name in [
         "sitk_rgb.nrrd",
         "sitk_rgb.mha",

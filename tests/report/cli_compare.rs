@@ -261,8 +261,8 @@ fn an_option_that_goes_with_no_compared_mode_is_refused() {
             "'probe' cannot be combined with any mode",
         ),
     ] {
-        let said = place.refused(&format!("compare ball.nrrd -o out {options}"), 2);
-        assert!(said.contains(wanted), "{options}: {said}");
+        let message = place.refused(&format!("compare ball.nrrd -o out {options}"), 2);
+        assert!(message.contains(wanted), "{options}: {message}");
     }
 }
 
@@ -287,7 +287,7 @@ fn what_is_done_before_a_failure_stays() {
         repeats.collect::<Vec<_>>()
     };
     assert_eq!(timed("iso"), [2; 8]);
-    // Judged, not timed yet.
+    // Compared with the reference, but not timed yet.
     assert_eq!(timed("mip"), [0]);
 }
 
@@ -339,14 +339,14 @@ fn wrong_usage_is_refused_before_the_work() {
             "cannot be compared",
         ),
     ] {
-        let said = place.refused(line, code);
-        assert!(said.contains(wanted), "{line}: {said}");
+        let message = place.refused(line, code);
+        assert!(message.contains(wanted), "{line}: {message}");
     }
     let Some(device) = common::device_flag() else {
         return;
     };
-    let said = place.refused(&format!("compare ball.nrrd -o taken {device}"), 74);
-    assert!(said.contains("is not a folder"), "{said}");
+    let message = place.refused(&format!("compare ball.nrrd -o taken {device}"), 74);
+    assert!(message.contains("is not a folder"), "{message}");
 }
 
 #[test]

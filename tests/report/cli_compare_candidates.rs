@@ -110,10 +110,10 @@ fn what_a_bound_chooses_takes_part_and_is_stored() {
         "{SMALL} --modes mip,dvr --configs one.toml --max-error value:1% {device}"
     ));
     assert!(output.status.success(), "{}", stderr(&output));
-    let said = stderr(&output);
+    let messages = stderr(&output);
     assert!(
-        said.contains("dvr: max-error value:0.01 has no meaning there"),
-        "{said}"
+        messages.contains("dvr: max-error value:0.01 has no meaning there"),
+        "{messages}"
     );
     let results = place.json("out/results.json");
     let chosen = &results["max_error"]["mip"];
@@ -267,7 +267,7 @@ fn a_comparison_that_is_passed_on_does_not_say_where_things_lay() {
 }
 
 #[test]
-fn long_work_in_a_pipe_says_what_is_being_done() {
+fn long_work_in_a_pipe_reports_what_is_being_done() {
     let Some(device) = common::device_flag() else {
         return;
     };
@@ -277,15 +277,20 @@ fn long_work_in_a_pipe_says_what_is_being_done() {
     place.write("peer.sh", &slow.replace("\"black\"", "\"bl\\u202eack\""));
     place.write("peers.toml", "peer = 'sh peer.sh'\n");
     let output = place.run(&format!("{SMALL} --modes mip --scene peers.toml {device}"));
-    let said = stderr(&output);
-    assert!(output.status.success(), "{said}");
-    let line = said.lines().find(|line| line.contains("loads the volume"));
-    let line = line.unwrap_or_else(|| panic!("nothing was said: {said}"));
+    let messages = stderr(&output);
+    assert!(output.status.success(), "{messages}");
+    let line = messages
+        .lines()
+        .find(|line| line.contains("loads the volume"));
+    let line = line.unwrap_or_else(|| panic!("no such line: {messages}"));
     assert!(
         line.starts_with("bl\\u{202e}ack loads the volume ") && line.ends_with(" s"),
         "{line}"
     );
-    assert!(!said.contains(['\u{1b}', '\r', '\u{202e}']), "{said}");
+    assert!(
+        !messages.contains(['\u{1b}', '\r', '\u{202e}']),
+        "{messages}"
+    );
 }
 
 #[test]
@@ -437,13 +442,13 @@ fn names_that_would_be_taken_for_another_are_refused() {
         ("--max-error value:1%", "only a projection shows values"),
     ] {
         let line = format!("{SMALL} --modes iso --iso 100 {device} {line}");
-        let said = place.refused(&line, 2);
-        assert!(said.contains(wanted), "{line}: {said}");
+        let message = place.refused(&line, 2);
+        assert!(message.contains(wanted), "{line}: {message}");
     }
-    let said = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
+    let message = place.refused(&format!("{SMALL} --modes mip --refine none {device}"), 2);
     assert!(
-        said.contains("'refine' cannot be combined with mode 'mip'"),
-        "{said}"
+        message.contains("'refine' cannot be combined with mode 'mip'"),
+        "{message}"
     );
     // The control: alone each of these is fine, and a file's modes are those that are compared.
     place.done(&format!("{SMALL} --configs mip.toml {device}"));
@@ -506,11 +511,11 @@ fn without_a_cache_folder_nothing_is_cached_and_all_else_works() {
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
-    let said = stderr(&output);
-    assert!(said.contains("pictures are not cached"), "{said}");
+    let messages = stderr(&output);
+    assert!(messages.contains("pictures are not cached"), "{messages}");
     assert_eq!(rows(&place).len(), 1);
     fs::remove_dir_all(place.path("out")).unwrap();
     // One that the user names has to work.
-    let said = place.refused(&format!("{line} --cache home/angioray"), 74);
-    assert!(said.contains("--cache off"), "{said}");
+    let message = place.refused(&format!("{line} --cache home/angioray"), 74);
+    assert!(message.contains("--cache off"), "{message}");
 }

@@ -46,10 +46,10 @@ fn a_setting_that_no_line_of_ours_can_name_is_refused() {
         ))
     };
     for name in ["two\\nlines", &"long".repeat(200)] {
-        let said = hello(name).start().err().unwrap().to_string();
-        assert!(said.contains("control character"), "{said}");
+        let message = hello(name).start().err().unwrap().to_string();
+        assert!(message.contains("control character"), "{message}");
     }
-    // The control: any other goes back as it was said.
+    // The control: any other goes back as it came.
     let peer = hello("step 0.5, \u{fc}ber").start().unwrap();
     assert_eq!(peer.settings("mip"), ["step 0.5, über"]);
 }
@@ -62,21 +62,21 @@ fn a_peer_that_babbles_is_quoted() {
         "the peer fake 1.2 was to render and answered 'Warning: no depth buffer', which is not a JSON object"
     );
     let other = r#"*'"load"'*) echo '{"milliseconds":1}' ;;"#;
-    let said = refusal(&Fake::answering(&[other]));
+    let message = refusal(&Fake::answering(&[other]));
     assert!(
-        said.contains("gave another answer: missing field `loaded`"),
-        "{said}"
+        message.contains("gave another answer: missing field `loaded`"),
+        "{message}"
     );
     let twice = r#"*'"load"'*) printf '{"loaded":1}\nmore\n' ;;"#;
     let fake = Fake::answering(&[twice, READY]);
     let volume = volume();
     let mut peer = fake.start().unwrap();
     peer.load(&volume).unwrap();
-    let said = peer.load(&volume).unwrap_err().to_string();
-    assert!(said.contains("'more'"), "{said}");
+    let message = peer.load(&volume).unwrap_err().to_string();
+    assert!(message.contains("'more'"), "{message}");
     // Without end, and without a line's end.
-    let said = Fake::new("yes | tr -d '\\n'").start().err().unwrap();
-    assert!(said.to_string().contains("yyy…"), "{said}");
+    let error = Fake::new("yes | tr -d '\\n'").start().err().unwrap();
+    assert!(error.to_string().contains("yyy…"), "{error}");
 }
 
 #[test]
@@ -95,23 +95,23 @@ fn a_peer_that_ends_is_quoted_and_stays_ended() {
     assert_eq!(peer.time(&scene).unwrap_err().to_string(), first);
 
     let at_once = Fake::new("exit 0");
-    let said = at_once.start().err().unwrap().to_string();
+    let message = at_once.start().err().unwrap().to_string();
     let expected = format!(
         "the peer '{}' ended (exit status: 0) where it was to say hello",
         at_once.command
     );
-    assert_eq!(said, expected);
+    assert_eq!(message, expected);
 }
 
 #[test]
 fn a_silent_peer_is_not_waited_for() {
     let start = Instant::now();
     let silent = Fake::new("exec sleep 600");
-    let said = Peer::start_with_patience(&silent.command, Duration::from_millis(300));
-    let said = said.err().unwrap().to_string();
+    let outcome = Peer::start_with_patience(&silent.command, Duration::from_millis(300));
+    let message = outcome.err().unwrap().to_string();
     assert!(
-        said.ends_with("was to say hello and has not answered for 0.3 s"),
-        "{said}"
+        message.ends_with("was to say hello and has not answered for 0.3 s"),
+        "{message}"
     );
     // Nor is one that does not listen: a transfer function larger than any pipe.
     let deaf = Fake::new(&format!("{HELLO}\nexec sleep 600"));

@@ -164,18 +164,18 @@ fn a_scene_is_sent_in_stored_values_and_linear_light() {
 }
 
 #[test]
-fn what_a_peer_cannot_draw_it_says_and_goes_on() {
+fn a_peer_reports_what_it_cannot_draw_and_stays_usable() {
     let unable = r#"*'"scene"'*) echo '{"supported":false,"why":"no such light"}' ;;"#;
     let fake = Fake::answering(&[LOAD, unable]);
     let volume = volume();
     let scene = scene_of(&volume, maximum());
     let mut peer = fake.start().unwrap();
     for _ in 0..2 {
-        let said = peer.prepare(&volume, &scene, "fine").unwrap();
+        let readiness = peer.prepare(&volume, &scene, "fine").unwrap();
         let expected = Readiness::Unsupported {
             why: "no such light".into(),
         };
-        assert_eq!(said, expected);
+        assert_eq!(readiness, expected);
     }
 
     let failing = r#"*'"scene"'*) echo '{"error":"out of memory"}' ;;"#;

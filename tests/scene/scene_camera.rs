@@ -67,13 +67,13 @@ fn azimuth_goes_to_the_left_and_elevation_to_the_head() {
     let eye = [sin30 * cos20, -cos30 * cos20, sin20];
     let up = [-sin30 * sin20, cos30 * sin20, cos20];
     assert!(eye_is(&["--azimuth", "30", "--elevation", "20"], eye, up));
-    for said in [
+    for angulation in [
         "LAO 30 CRA 20",
         "cra 20 lao 30",
         "LAO30 CRAN20",
         "LAO 30°, CRA 20°",
     ] {
-        assert!(eye_is(&["--carm", said], eye, up), "{said}");
+        assert!(eye_is(&["--carm", angulation], eye, up), "{angulation}");
     }
     let opposite = [-eye[0], eye[1], -eye[2]];
     let opposite_up = [-sin30 * sin20, -cos30 * sin20, cos20];
@@ -278,12 +278,12 @@ fn an_eye_too_far_for_its_volume_is_refused() {
     ] {
         let error = outcome(line).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{line:?}");
-        let said = error.to_string();
+        let message = error.to_string();
         assert!(
-            said.contains("the eye is") || said.contains("too far away"),
-            "{said}"
+            message.contains("the eye is") || message.contains("too far away"),
+            "{message}"
         );
-        assert!(said.len() < 160, "{said}");
+        assert!(message.len() < 160, "{message}");
     }
     // The control.
     assert_eq!(outcome(&["--eye=0.9e10,0,0"]), Ok(()));

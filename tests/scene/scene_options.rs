@@ -59,7 +59,7 @@ fn resolved(options: &SceneOptions) -> Resolved {
 
 #[test]
 fn thresholds_are_values_shares_or_otsu() {
-    let iso = |said: &str| match resolved(&flags(&["--iso", said])).scene.picture {
+    let iso = |text: &str| match resolved(&flags(&["--iso", text])).scene.picture {
         Picture::Surface { iso, .. } => iso,
         other => panic!("{other:?}"),
     };
@@ -240,30 +240,30 @@ fn files_named_in_a_scene_file_are_relative_to_it() {
 #[test]
 fn an_iso_value_outside_the_range_says_what_is_shown() {
     let Range { min, max } = SUBJECT.range;
-    let said = |text: &str| {
+    let notes = |text: &str| {
         let notes = resolved(&file(text)).notes.into_iter();
         let of_surface = notes.filter(|note| note.contains("no surface"));
         of_surface.collect::<Vec<String>>()
     };
-    let below = said(&format!("iso = {}", min - 1.0));
+    let below = notes(&format!("iso = {}", min - 1.0));
     assert!(
         below[0].contains("below") && below[0].contains("only its caps"),
         "{below:?}"
     );
-    let open = said(&format!("iso = {}\ncaps = 'off'", min - 1.0));
+    let open = notes(&format!("iso = {}\ncaps = 'off'", min - 1.0));
     assert!(
         open[0].contains("below") && open[0].contains("without caps nothing"),
         "{open:?}"
     );
     for caps in ["on", "off"] {
-        let above = said(&format!("iso = {}\ncaps = '{caps}'", max + 1.0));
+        let above = notes(&format!("iso = {}\ncaps = '{caps}'", max + 1.0));
         assert!(
             above[0].contains("above") && above[0].ends_with("nothing is shown"),
             "{above:?}"
         );
         // The control: the ends are values of the volume.
-        assert!(said(&format!("iso = {min}\ncaps = '{caps}'")).is_empty());
-        assert!(said(&format!("iso = {max}\ncaps = '{caps}'")).is_empty());
+        assert!(notes(&format!("iso = {min}\ncaps = '{caps}'")).is_empty());
+        assert!(notes(&format!("iso = {max}\ncaps = '{caps}'")).is_empty());
     }
 }
 
@@ -354,8 +354,8 @@ fn nonsense_is_refused_with_a_reason() {
         ("up = [0, 1, 0]", "'up' can only be given with 'eye'"),
         ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
-        let said = refusal(text);
-        assert!(said.contains(reason), "{text}: {said}");
+        let message = refusal(text);
+        assert!(message.contains(reason), "{text}: {message}");
     }
     // The controls: the same keys where they mean something.
     for text in [
@@ -390,9 +390,9 @@ fn a_wrong_scene_file_is_refused_with_its_line() {
         ("background = [0, 0, 2]", "scene.toml:1: "),
         (inline_tf, "scene.toml:5: "),
     ] {
-        let said = refusal(text);
-        assert!(said.starts_with(place), "{text}: {said}");
-        assert!(!said.contains('\n'), "{said}");
+        let message = refusal(text);
+        assert!(message.starts_with(place), "{text}: {message}");
+        assert!(!message.contains('\n'), "{message}");
     }
 }
 
@@ -461,8 +461,8 @@ fn clip_planes_come_as_one_list_from_the_flags_or_from_the_file() {
     ] {
         assert!(refusal(wrong).contains("scene.toml:1"), "{wrong}");
     }
-    // What keeps nothing is said: the volume is a ball of 10 mm about 1,2,3.
-    let notes = |said: &str| resolved(&flags(&["--iso", "1", "--clip-plane", said])).notes;
+    // A plane that keeps nothing is noted: the volume is a ball of 10 mm about 1,2,3.
+    let notes = |plane: &str| resolved(&flags(&["--iso", "1", "--clip-plane", plane])).notes;
     assert_eq!(
         notes("0,0,-2,-14.01"),
         ["clip-plane = 0,0,-2,-14.01 keeps nothing of the volume"]
@@ -514,8 +514,8 @@ fn gradients_belong_to_normals_and_their_numbers_to_precomputed_ones() {
             "from 0 to 100 voxels",
         ),
     ] {
-        let said = refusal(wrong);
-        assert!(said.contains(reason), "{wrong}: {said}");
+        let message = refusal(wrong);
+        assert!(message.contains(reason), "{wrong}: {message}");
     }
     // A flag drops what of the file it rules out, and nothing else.
     let of_file = "gradient = 'precomputed'\ngradient-scale = 4";
@@ -577,9 +577,9 @@ fn what_dvr_averages_and_sums_belongs_to_it_alone() {
         ("mode = 'dvr'\nhomogeneity-rule = 'paper'", "optical, range"),
         ("clip-plane = [[0, 0, 0, 1]]", "has no direction"),
     ] {
-        let said = refusal(wrong);
-        assert!(said.contains(reason), "{wrong}: {said}");
-        assert!(!said.contains('\n'), "{wrong}: {said}");
+        let message = refusal(wrong);
+        assert!(message.contains(reason), "{wrong}: {message}");
+        assert!(!message.contains('\n'), "{wrong}: {message}");
     }
     for right in [
         "mode = 'dvr'\nquad = 'adaptive:1e-3'\nshading = 'phong'",

@@ -81,8 +81,11 @@ fn in_dvr_exact_sampling_is_the_adaptive_quadrature() {
     ];
     for (quad, sampling) in contradictions {
         let text = format!("mode = 'dvr'\nsampling = '{sampling}'\n{quad}");
-        let said = options(&text).checked().unwrap_err().to_string();
-        assert!(said.contains("cannot be combined with 'quad'"), "{said}");
+        let message = options(&text).checked().unwrap_err().to_string();
+        assert!(
+            message.contains("cannot be combined with 'quad'"),
+            "{message}"
+        );
     }
 }
 

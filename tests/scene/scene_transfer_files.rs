@@ -111,11 +111,11 @@ fn a_wrong_file_is_refused_with_its_line() {
         let Err(error) = TransferFile::parse(&text, "a.toml") else {
             panic!("accepted: {text}")
         };
-        let said = error.to_string();
-        assert_eq!(error.exit_code(), 2, "{said}");
+        let message = error.to_string();
+        assert_eq!(error.exit_code(), 2, "{message}");
         assert!(
-            said.starts_with(place) && said.contains(why),
-            "{text}: {said}"
+            message.starts_with(place) && message.contains(why),
+            "{text}: {message}"
         );
     }
     let missing = TransferFile::named("no/such.toml").unwrap_err();

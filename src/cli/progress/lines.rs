@@ -167,7 +167,7 @@ mod tests {
     const PATIENCE: Duration = Duration::from_secs(60);
 
     #[test]
-    fn a_stage_that_says_nothing_is_reported_again_and_again() {
+    fn a_stage_without_progress_is_reported_again_and_again() {
         let (lines, written) = lines(Duration::from_millis(1));
         lines.begin("building kernels", UNKNOWN_TOTAL);
         for _ in 0..3 {
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn between_stages_and_in_short_ones_nothing_is_said() {
+    fn between_stages_and_in_short_ones_nothing_is_printed() {
         let (quick, written) = lines(PATIENCE);
         quick.begin("reading", 5);
         quick.advance(5);

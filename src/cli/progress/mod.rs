@@ -18,7 +18,7 @@ pub struct Bars(Arc<Form>);
 
 enum Form {
     Terminal(TerminalBars),
-    /// A pipe or a file; and where nothing but errors is said, since messages are not.
+    /// A pipe or a file; also where only errors are printed, since messages are not.
     Lines(Lines),
 }
 

@@ -100,9 +100,9 @@ pub(super) fn encode(
         (true, Ok(())) => {}
         (true, Err(cause)) => return Err(Error::writing(path, "write", &cause)),
         (false, _) => {
-            let said = last_line(&mut messages).unwrap_or_else(|| status.to_string());
+            let reason = last_line(&mut messages).unwrap_or_else(|| status.to_string());
             return Err(Error::resource(format!(
-                "{}: ffmpeg failed: {said}",
+                "{}: ffmpeg failed: {reason}",
                 path.display()
             )));
         }

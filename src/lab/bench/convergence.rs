@@ -40,6 +40,7 @@ const FLOOR_OF_MANY: f64 = 3e-6;
 
 /// A path through one cell, and what is seen along it.
 pub struct Smooth {
+    /// The name of the field along the path, such as `ramp`.
     pub name: &'static str,
     volume: Volume,
     toward: DVec3,
@@ -75,7 +76,7 @@ impl Smooth {
         })
     }
 
-    /// The field is the share of the path.
+    /// A field that rises linearly from 0 to 1 along the path.
     ///
     /// # Errors
     /// The volume is refused, as it is if there is no memory for it.
@@ -110,8 +111,9 @@ impl Smooth {
 
 /// The errors of one rule on one path, one for each step size.
 pub struct Errors {
-    /// The largest of the three channels.
+    /// The errors of the colour: the largest difference of its three channels.
     pub color: Vec<f64>,
+    /// The errors of the opacity: its difference.
     pub opacity: Vec<f64>,
 }
 

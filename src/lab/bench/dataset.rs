@@ -16,7 +16,9 @@ use crate::volume::{
 /// A volume, its name, and the iso value of its surface.
 #[derive(Debug)]
 pub struct Dataset {
+    /// The name in tables and pages: a phantom's, or the file's.
     pub name: String,
+    /// The volume that is measured.
     pub volume: Volume,
     /// The iso value, physical.
     pub iso: f64,

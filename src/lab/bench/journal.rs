@@ -211,8 +211,11 @@ mod tests {
         assert_eq!(journal.result::<Option<f64>>("a/2").unwrap(), Some(None));
         assert_eq!(journal.result::<f64>("a/3").unwrap(), None);
         // The control: what is of another type is not taken for it.
-        let said = journal.result::<f64>("a/1").unwrap_err();
-        assert!(said.to_string().contains("'a/1' cannot be read"), "{said}");
+        let error = journal.result::<f64>("a/1").unwrap_err();
+        assert!(
+            error.to_string().contains("'a/1' cannot be read"),
+            "{error}"
+        );
         journal.finish().unwrap();
         drop(journal);
         let begun = Journal::open(folder.path(), &run("quick"), false).unwrap();
@@ -246,25 +249,26 @@ mod tests {
         let open = |preset: &str, restart| Journal::open(folder.path(), &run(preset), restart);
         let mut journal = open("quick", false).unwrap();
         journal.record("unit", &1.0).unwrap();
-        let said = open("quick", false).unwrap_err();
+        let error = open("quick", false).unwrap_err();
         assert!(
-            said.to_string().contains("another run is writing"),
-            "{said}"
+            error.to_string().contains("another run is writing"),
+            "{error}"
         );
         drop(journal);
-        let said = open("full", false).unwrap_err();
+        let error = open("full", false).unwrap_err();
         assert!(
-            said.to_string()
+            error
+                .to_string()
                 .contains("its effort was quick, this one's is full"),
-            "{said}"
+            "{error}"
         );
-        assert!(said.hint_text().unwrap().contains("--restart"));
+        assert!(error.hint_text().unwrap().contains("--restart"));
         assert_eq!(open("quick", false).unwrap().units(), 1);
         assert_eq!(open("full", true).unwrap().units(), 0);
         let path = folder.path().join(Journal::NAME);
         let text = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, format!("{text}{{\"unit\": 3}}\n")).unwrap();
-        let said = open("full", false).unwrap_err();
-        assert!(said.to_string().contains("line 2 is damaged"), "{said}");
+        let error = open("full", false).unwrap_err();
+        assert!(error.to_string().contains("line 2 is damaged"), "{error}");
     }
 }

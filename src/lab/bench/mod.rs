@@ -241,12 +241,13 @@ fn display_ms(renderer: &mut Renderer, scene: &Scene, azimuth_deg: f64) -> Resul
 pub struct Outcome {
     /// The figures, a row each.
     pub table: Table,
-    /// How they were measured.
+    /// The conditions under which they were measured.
     pub conditions: Conditions,
     /// The findings of the table, a sentence each.
     pub findings: Vec<String>,
     /// The sections of the page before its table: a volume or a picture each.
     pub sections: Vec<Section>,
+    /// The pictures that the page shows.
     pub pictures: Vec<Illustration>,
     /// Why the experiment failed: what must hold does not.
     pub failure: Option<String>,
@@ -268,6 +269,7 @@ impl Outcome {
 
 /// A measurement that anyone can repeat by its name.
 pub struct Experiment {
+    /// The experiment's name, as users write it.
     pub name: &'static str,
     /// One line for the list of experiments.
     pub about: &'static str,
@@ -280,6 +282,7 @@ pub struct Experiment {
     /// Whether the experiment uses [`Bench::frames`] and [`Bench::peer`]: it times whole frames beside
     /// another program's.
     pub takes_peer: bool,
+    /// The measurement itself.
     pub run: fn(&Bench) -> Result<Outcome>,
 }
 

@@ -3,9 +3,12 @@
 /// The amount of work, chosen by `--quick` and `--full`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
+    /// Small pictures, few repeats (`--quick`).
     Quick,
+    /// The amount without either flag.
     #[default]
     Usual,
+    /// Large pictures, many repeats (`--full`).
     Full,
 }
 

@@ -19,6 +19,7 @@ pub enum Protocol {
 }
 
 impl Protocol {
+    /// Both protocols.
     pub const ALL: [Self; 2] = [Self::Static, Self::Orbit];
 
     /// The protocol's name, as users write it.

@@ -20,10 +20,10 @@ pub struct Folder {
 impl Folder {
     const PICTURES: &str = "pictures";
 
-    /// One that may be there already. Makes nothing yet.
+    /// The folder of a comparison, which may exist already; nothing is made yet.
     ///
     /// # Errors
-    /// It is there and takes no files, or cannot be made.
+    /// The folder exists and takes no files, or cannot be made.
     pub fn new(path: &Path) -> Result<Self> {
         let folder = Self {
             path: path.to_owned(),

@@ -47,11 +47,13 @@ const OURS: &str = "angioray";
 
 /// A comparison: its volume, its scenes and its settings.
 pub struct Comparison<'a> {
+    /// The volume that all candidates draw.
     pub volume: &'a Volume,
     /// The properties of the volume from which a mode's defaults are made.
     pub subject: Subject,
     /// Where the reference's pictures come from.
     pub reference: ReferenceCache<'a>,
+    /// The modes that are compared, each with its settings.
     pub modes: Vec<ModeSettings>,
     /// How often each candidate is timed.
     pub repeats: usize,
@@ -59,12 +61,14 @@ pub struct Comparison<'a> {
     pub folder: Folder,
     /// Facts that the results hold beside the rows, for programs.
     pub about: Value,
+    /// Where progress is reported.
     pub progress: &'a dyn Progress,
 }
 
 /// The results of a comparison.
 #[derive(Default)]
 pub struct Compared {
+    /// One row per candidate and mode.
     pub rows: Vec<Row>,
     /// A section a mode, then one of the modes side by side.
     pub sections: Vec<Section>,

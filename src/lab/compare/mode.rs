@@ -9,6 +9,7 @@ use crate::subject::Subject;
 /// A mode, what is seen in it, and the settings in which it is rendered.
 #[derive(Debug, Clone)]
 pub struct ModeSettings {
+    /// What kind of picture is rendered.
     pub mode: Mode,
     /// The scene that the reference renders.
     pub resolved: Resolved,

@@ -12,6 +12,7 @@ use crate::scene::Mode;
 /// A row of the results; what is not known yet, or cannot be, is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
+    /// The mode in which the candidate was measured.
     pub mode: Mode,
     /// The candidate's name, with the renderer one of its own in the mode.
     pub setting: String,
@@ -25,11 +26,15 @@ pub struct Row {
     pub failure: Option<String>,
     /// How a peer's picture differs from what the scene says.
     pub note: Option<String>,
+    /// The errors against the reference.
     pub error: Option<Figures>,
+    /// The times of the frame, and of what is done once.
     pub times_ms: RowTimes,
     /// The passes of the frame that is nearest to the median, in launch order.
     pub passes: Vec<PassMs>,
+    /// The picture's counters of rays, samples, nodes and hits; a peer has none.
     pub counts: Option<Counts>,
+    /// The memory in use; unknown of a peer.
     pub memory: Option<RowMemory>,
     /// The keys of the errors by which the setting is on the Pareto front of its mode.
     pub on_front: Vec<&'static str>,
@@ -37,37 +42,40 @@ pub struct Row {
     pub files: Option<RowFiles>,
 }
 
-/// Frames for display, all candidates in turn; what is done once is apart.
+/// The times of a row: of frames for display, all candidates in turn, and apart of what is done once.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct RowTimes {
+    /// The number of timed frames.
     pub repeats: usize,
     /// The time from the camera set to pixels that the host can read, ms.
     pub frame: Option<Spread>,
-    /// The processor time of all threads of the program that drew it, the median; unknown on some
+    /// The processor time of all threads of the program that drew it, the median, ms; unknown on some
     /// systems.
     pub processor: Option<f64>,
     /// The time from the first launch to the last one's end, ms on the device's clock.
     pub render: Option<Spread>,
-    /// Uploading the volume: with the first picture of all, then 0.
+    /// The time to upload the volume, ms: with the first picture of all, then 0.
     pub upload: Option<f64>,
-    /// Compiling the kernels that no row before this one needed.
+    /// The time to build the kernels that no row before this one needed, ms.
     pub build: Option<f64>,
-    /// Classifying the nodes of the octree.
+    /// The time to classify the nodes of the octree, ms.
     pub classify: Option<f64>,
-    /// Computing and uploading precomputed gradients.
+    /// The time to compute and upload precomputed gradients, ms.
     pub gradient: Option<f64>,
-    /// Time of what a peer does once for the scene, ms.
+    /// The time of what a peer does once for the scene, ms.
     pub prepare: Option<f64>,
-    /// Time to write the PNG, ms.
+    /// The time to write the PNG, ms.
     pub encode: Option<f64>,
 }
 
 /// The spread of the repeats' times.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
+    /// The median, ms.
     pub median: f64,
-    /// The median of the absolute deviations from the median.
+    /// The median of the absolute deviations from the median, ms.
     pub mad: f64,
+    /// The smallest time, ms.
     pub min: f64,
 }
 
@@ -84,14 +92,18 @@ impl From<&Times> for Spread {
 /// A pass, and what it took on the device's clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PassMs {
+    /// The pass's name.
     pub name: String,
+    /// The time that the pass took, ms.
     pub ms: f64,
 }
 
+/// The memory that a candidate takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RowMemory {
     /// The most that the process held, the rows before this one included; unknown on some systems.
     pub host_peak_bytes: Option<u64>,
+    /// The device memory in use after the picture, in bytes.
     pub device_bytes: u64,
     /// The bytes uploaded from host to device for this picture; with the first one of all (which may be
     /// one that an error bound was chosen by), the volume too.
@@ -101,9 +113,13 @@ pub struct RowMemory {
 /// File names in the comparison's folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct RowFiles {
+    /// The picture as PNG.
     pub png: String,
+    /// The picture as EXR, with all its planes.
     pub exr: String,
+    /// The error map in colours, as PNG.
     pub error_png: String,
+    /// The error map's numbers, as EXR.
     pub error_exr: String,
 }
 

@@ -17,7 +17,7 @@ pub struct HardCase {
     pub about: &'static str,
     /// One sentence: the right answer.
     pub answer: &'static str,
-    /// The names of its volumes, where it has several; else empty.
+    /// The names of the case's volumes, where it has several; else empty.
     pub members: &'static [&'static str],
     pub(super) make: fn(usize) -> Result<HardVolume>,
     pub(super) scenes: fn(&Volume) -> Vec<HardScene>,
@@ -26,6 +26,7 @@ pub struct HardCase {
 /// A hard case's volume.
 #[derive(Debug)]
 pub struct HardVolume {
+    /// The volume, as scenes see it.
     pub volume: Volume,
     /// NRRD's name of the voxel type and little-endian voxels, where a [`Volume`] cannot hold them
     /// as they stand in the file: `volume` is then what reading that file gives.
@@ -51,7 +52,7 @@ impl From<Volume> for HardVolume {
 }
 
 impl HardVolume {
-    /// Writes an attached NRRD file, as [`write_nrrd`] does.
+    /// Writes the volume to an attached NRRD file, as [`write_nrrd`] does.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -66,7 +67,7 @@ impl HardVolume {
 }
 
 impl HardCase {
-    /// How many volumes it has.
+    /// The number of the case's volumes.
     pub fn count(&self) -> usize {
         self.members.len().max(1)
     }
@@ -86,7 +87,7 @@ impl HardCase {
         (self.make)(member)
     }
 
-    /// The scenes of one of its volumes, at least one.
+    /// The scenes of one of the case's volumes, at least one.
     pub fn scenes(&self, volume: &Volume) -> Vec<HardScene> {
         (self.scenes)(volume)
     }

@@ -13,7 +13,7 @@ pub use volumes::orientation_of;
 use crate::error::{Error, Result};
 
 impl HardCase {
-    /// All of them, by number.
+    /// All hard cases, by number.
     pub fn all() -> impl Iterator<Item = &'static Self> {
         volumes::CASES.into_iter().flatten()
     }

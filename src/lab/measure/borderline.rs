@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DQuat;
 use rayon::prelude::*;
 
-use super::{Answer, HitJudge, HitVerdict};
+use super::{Answer, HitChecker, HitVerdict};
 use crate::error::Result;
 use crate::frame::{DEPTH, Frame, KIND, Kind};
 use crate::reference::Tracer;
@@ -16,7 +16,7 @@ use crate::volume::Volume;
 /// Depths farther apart than this, in voxels, belong to different places.
 const JUMP_VOXELS: f64 = 1.0;
 
-/// The resolution of a fixed step's depth, in voxels: [`HitJudge::verdict`] takes five times as much,
+/// The resolution of a fixed step's depth, in voxels: [`HitChecker::verdict`] takes five times as much,
 /// [`JUMP_VOXELS`], for the same place.
 const RESOLUTION_VOXELS: f64 = JUMP_VOXELS / 5.0;
 
@@ -53,7 +53,7 @@ type PixelAnswer = (usize, u32, Option<u32>);
 
 /// The borderline answers for one surface; each is looked into once.
 pub struct Borderline<'a> {
-    judge: HitJudge<'a>,
+    checker: HitChecker<'a>,
     scene: &'a Scene,
     voxel_mm: f64,
     closeness: Closeness,
@@ -64,10 +64,10 @@ impl<'a> Borderline<'a> {
     /// Prepares the comparison of pictures of `scene`.
     ///
     /// # Errors
-    /// As [`HitJudge::new`].
+    /// As [`HitChecker::new`].
     pub fn new(volume: &'a Volume, scene: &'a Scene, closeness: Closeness) -> Result<Self> {
         Ok(Self {
-            judge: HitJudge::new(volume, scene)?,
+            checker: HitChecker::new(volume, scene)?,
             scene,
             voxel_mm: volume.geometry().smallest_spacing_mm(),
             closeness,
@@ -116,7 +116,7 @@ impl<'a> Borderline<'a> {
         excused
     }
 
-    /// The number of pixels at which any was found.
+    /// The number of pixels at which a borderline answer was found.
     pub fn count(&self) -> usize {
         let borderline = self.known.iter().filter(|(_, is)| **is);
         let pixels: HashSet<usize> = borderline.map(|((pixel, ..), _)| *pixel).collect();
@@ -133,7 +133,7 @@ impl<'a> Borderline<'a> {
     fn is_borderline(&self, (pixel, depth_bits, kind): PixelAnswer) -> bool {
         let depth_mm = f64::from(f32::from_bits(depth_bits));
         let ray = pixel_ray(self.scene, pixel);
-        let reference = self.judge.reference(ray);
+        let reference = self.checker.reference(ray);
         let kinds: &[Kind] = match kind {
             Some(kind) if kind == Kind::Nothing as u32 => &[Kind::Nothing],
             Some(kind) if kind == Kind::Surface as u32 => &[Kind::Surface],
@@ -145,7 +145,7 @@ impl<'a> Borderline<'a> {
         let resolution_mm = self.closeness.resolution_voxels() * self.voxel_mm;
         kinds.iter().any(|&kind| {
             let answer = Answer { kind, depth_mm };
-            let verdict = (self.judge).verdict(ray, reference, answer, resolution_mm);
+            let verdict = self.checker.verdict(ray, reference, answer, resolution_mm);
             verdict == HitVerdict::Borderline
         })
     }
@@ -153,7 +153,9 @@ impl<'a> Borderline<'a> {
 
 /// Gives pixels of local maxima that differ from the reference's by more than `close` (physical) the
 /// reference's value where the reference itself gives theirs for a ray no farther away than
-/// [`HitJudge::NEAR_VOXELS`]: whether a ray dips between two maxima, no finite precision decides.
+/// [`HitChecker::NEAR_VOXELS`].
+///
+/// Whether a ray dips between two maxima, no finite precision decides.
 ///
 /// # Errors
 /// As [`Tracer::new`].
@@ -165,7 +167,7 @@ pub fn excuse_dips(
     close: f64,
 ) -> Result<()> {
     const EIGHTH_TURN: f64 = 0.785;
-    let near_mm = HitJudge::NEAR_VOXELS * volume.geometry().smallest_spacing_mm();
+    let near_mm = HitChecker::NEAR_VOXELS * volume.geometry().smallest_spacing_mm();
     let tracer = Tracer::new(volume, scene)?;
     for (pixel, (value, &reference)) in values.iter_mut().zip(reference).enumerate() {
         if f64::from((*value - reference).abs()) <= close {

@@ -8,11 +8,13 @@ use crate::scene::Picture;
 /// Counters summed over a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Counts {
+    /// Rays cast, one per pixel.
     pub rays: u64,
     /// Samples taken, or cells visited.
     pub samples: u64,
     /// Hierarchy nodes visited.
     pub nodes: u64,
+    /// Rays that hit something.
     pub hits: u64,
     /// Pixels of which neither a hit nor a miss is proven; where the certificate was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -44,10 +46,12 @@ impl Counts {
         }
     }
 
+    /// The mean number of samples, or of cells visited, per ray.
     pub fn samples_per_ray(&self) -> f64 {
         self.samples as f64 / self.rays as f64
     }
 
+    /// The mean number of hierarchy nodes visited per ray.
     pub fn nodes_per_ray(&self) -> f64 {
         self.nodes as f64 / self.rays as f64
     }

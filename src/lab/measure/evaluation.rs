@@ -13,9 +13,10 @@ use crate::volume::Volume;
 use super::Counts;
 use super::processor::processor_ms;
 
-/// The planes in which a picture of this kind can be wrong, and the counters. A surface's values
-/// are all the iso value, and a maximum's depth hangs on rounding where the field is flat: neither
-/// is compared.
+/// The planes in which a picture of this kind can be wrong, and the counters.
+///
+/// A surface's values are all the iso value, and a maximum's depth hangs on rounding where the field is
+/// flat: neither is compared.
 pub fn evaluated_planes(picture: &Picture) -> Wanted {
     let surface = matches!(picture, Picture::Surface { .. });
     let projection = matches!(picture, Picture::Projection { .. });
@@ -37,8 +38,11 @@ pub fn error_scale(volume: &Volume) -> Scale {
 
 /// A picture and how wrong it is.
 pub struct Evaluation {
+    /// The picture, with the times of its passes.
     pub rendering: Rendering,
+    /// The errors against the reference.
     pub figures: Figures,
+    /// The picture's counters.
     pub counts: Counts,
 }
 
@@ -61,8 +65,9 @@ pub fn evaluate(
 }
 
 /// How wrong a picture is in some of its pixels, of which `reference` is the reference's
-/// ([`reference::render_pixels`](crate::reference::render_pixels)). SSIM and FLIP, which need
-/// neighbouring pixels, are left out.
+/// ([`reference::render_pixels`](crate::reference::render_pixels)).
+///
+/// SSIM and FLIP, which need neighbouring pixels, are left out.
 ///
 /// # Errors
 /// As [`figures`].
@@ -89,7 +94,7 @@ pub struct FrameTime {
     pub processor_ms: Option<f64>,
     /// The time from the first launch to the last one's end, ms on the device's clock.
     pub render_ms: f64,
-    /// The time of each pass, on the device's clock.
+    /// The time of each pass, ms on the device's clock.
     pub passes: Vec<PassTime>,
 }
 

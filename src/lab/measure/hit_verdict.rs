@@ -13,6 +13,7 @@ use crate::volume::Volume;
 /// A renderer's answer: the first thing that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
+    /// What the ray meets: a surface, a cap, or nothing.
     pub kind: Kind,
     /// Distance from the ray's origin, mm; +∞: nothing.
     pub depth_mm: f64,
@@ -30,29 +31,35 @@ impl From<&RayResult> for Answer {
 /// How an answer compares with the reference's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HitVerdict {
-    /// The reference's answer, so many voxels from it along the ray.
-    Agrees { apart: f64 },
-    /// Another answer, but the reference's own of a ray moved by at most [`HitJudge::NEAR_VOXELS`], or
-    /// of the iso value that the field has so far away or within [`HitJudge::NEAR_VALUE`]: the ray is
+    /// The answer is the reference's, to within [`HitChecker::APART_VOXELS`].
+    Agrees {
+        /// The distance of the two along the ray, in voxels of the smallest spacing.
+        apart: f64,
+    },
+    /// Another answer, but the reference's own of a ray moved by at most [`HitChecker::NEAR_VOXELS`], or
+    /// of the iso value that the field has so far away or within [`HitChecker::NEAR_VALUE`]: the ray is
     /// that near to a tangent of the surface, or begins that near to it.
     Borderline,
     /// The reference hits, the answer is nothing.
     Missed,
     /// The reference meets nothing, the answer is a hit.
     Extra,
-    /// Both hit, but different things or not at the same place: so many voxels apart.
-    Displaced { apart: f64 },
+    /// Both hit, but different things or not at the same place.
+    Displaced {
+        /// The distance of the two along the ray, in voxels of the smallest spacing; +∞ for different things.
+        apart: f64,
+    },
 }
 
 /// Gives verdicts on the answers for rays of one volume and one surface.
-pub struct HitJudge<'a> {
+pub struct HitChecker<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
     tracer: Tracer<'a>,
     voxel_mm: f64,
 }
 
-impl<'a> HitJudge<'a> {
+impl<'a> HitChecker<'a> {
     /// How near to a tangent a ray may be for either answer to be right, in voxels of the smallest
     /// spacing.
     pub const NEAR_VOXELS: f64 = 1e-4;
@@ -258,7 +265,7 @@ impl<'a> HitJudge<'a> {
         })
     }
 
-    /// Moves of a ray by [`HitJudge::NEAR_VOXELS`]: none, in eight directions sideways, and along
+    /// Moves of a ray by [`HitChecker::NEAR_VOXELS`]: none, in eight directions sideways, and along
     /// itself.
     fn moves(&self, ray: Ray) -> impl Iterator<Item = DVec3> {
         let along = ray.dir_world.normalize();
@@ -277,7 +284,7 @@ impl<'a> HitJudge<'a> {
     }
 
     /// Whether the field at a place of the ray is so near to the iso value that the surface is
-    /// within [`HitJudge::NEAR_VOXELS`].
+    /// within [`HitChecker::NEAR_VOXELS`].
     fn is_near(&self, ray: Ray, depth_mm: f64) -> bool {
         let Picture::Surface { iso, .. } = self.scene.picture else {
             return false;
@@ -300,8 +307,8 @@ impl<'a> HitJudge<'a> {
         (field - iso).abs() <= self.iso_off(ray, depth_mm)
     }
 
-    /// How much the field changes in [`HitJudge::NEAR_VOXELS`] about a place of the ray, or
-    /// [`HitJudge::NEAR_VALUE`]. Physical.
+    /// How much the field changes in [`HitChecker::NEAR_VOXELS`] about a place of the ray, or
+    /// [`HitChecker::NEAR_VALUE`]. Physical.
     fn iso_off(&self, ray: Ray, depth_mm: f64) -> f64 {
         let min_off = Self::NEAR_VALUE * self.volume.range().width();
         if !depth_mm.is_finite() {

@@ -13,7 +13,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// 19 of 20 rounds take no longer than this, ms.
+    /// The 95th percentile of the rounds, ms: 19 of 20 take no longer.
     pub fn p95_ms(&self) -> f64 {
         percentile(&mut self.rounds.clone(), 95).unwrap_or(f64::NAN)
     }
@@ -28,7 +28,7 @@ impl Times {
         median_of(self.rounds.iter().copied())
     }
 
-    /// How far the rounds lie from their median: the median of the absolute deviations.
+    /// The median of the rounds' absolute deviations from their median, ms.
     pub fn mad_ms(&self) -> f64 {
         let median = self.median_ms();
         median_of(self.rounds.iter().map(|ms| (ms - median).abs()))
@@ -41,13 +41,13 @@ impl Times {
         self
     }
 
-    /// How many rounds there were.
+    /// The number of rounds.
     pub fn repeats(&self) -> usize {
         self.rounds.len()
     }
 
-    /// How many times as long as `other`: the median of the ratios of each round, which a disturbance
-    /// of a whole round does not change.
+    /// How many times as long these rounds took as `other`: the median of the ratios of each round, which
+    /// a disturbance of a whole round does not change.
     pub fn over(&self, other: &Self) -> f64 {
         let rounds = self.rounds.iter().zip(&other.rounds);
         median_of(rounds.map(|(own, other)| own / other))
@@ -67,9 +67,10 @@ fn median_of(entries: impl Iterator<Item = f64>) -> f64 {
     median(&mut entries.collect::<Vec<_>>()).unwrap_or(f64::NAN)
 }
 
-/// Runs each of `settings` once to warm up, then all of them in turn, `repeats` times (at least
-/// once): what disturbs a round disturbs all settings alike. Returns what `once` returned, one value
-/// a round for every setting, without the warm-up.
+/// Runs each of `settings` once to warm up, then all of them in turn, `repeats` times (at least once): what
+/// disturbs a round disturbs all settings alike.
+///
+/// Returns what `once` returned, one value a round for every setting, without the warm-up.
 ///
 /// # Errors
 /// Those of `once`.
@@ -90,7 +91,7 @@ pub fn rounds<S, T>(
     Ok(results)
 }
 
-/// [`rounds`] whose only result is the ms.
+/// Times each of `settings` in [`rounds`]; `once` gives the time of one, ms.
 ///
 /// # Errors
 /// Those of `once`.

@@ -1,6 +1,6 @@
 //! The host memory of this process.
 
-/// The most host memory that this process has held so far; unknown on some systems.
+/// The most host memory that this process has held so far, in bytes; unknown on some systems.
 pub fn host_peak_bytes() -> Option<u64> {
     // Linux reports it in kB.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

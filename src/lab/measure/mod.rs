@@ -21,7 +21,7 @@ pub use counts::Counts;
 pub use evaluation::{
     Evaluation, FrameTime, error_scale, evaluate, evaluate_pixels, evaluated_planes, time,
 };
-pub use hit_verdict::{Answer, HitJudge, HitVerdict};
+pub use hit_verdict::{Answer, HitChecker, HitVerdict};
 pub use interleaved::{Times, interleaved, rounds};
 pub use memory::host_peak_bytes;
 pub use method_label::method_label;

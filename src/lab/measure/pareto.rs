@@ -3,7 +3,9 @@
 /// One setting: what it costs and how wrong it is; both finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tradeoff {
+    /// The time of a frame, in any unit.
     pub time: f64,
+    /// The error, in any unit; less is better.
     pub error: f64,
 }
 

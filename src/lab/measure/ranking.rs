@@ -10,7 +10,7 @@ pub struct RankingMetric {
     pub key: &'static str,
     /// The metric's title, for people; its unit is separate.
     pub title: &'static str,
-    /// Empty where the figure has none.
+    /// The unit of the figure for people; empty where it has none.
     pub unit: &'static str,
     /// How many of the unit are 1: shares and colours are 0 to 1 for programs.
     pub scale: f64,

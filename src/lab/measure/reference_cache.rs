@@ -37,10 +37,11 @@ struct Cache {
 
 /// A reference picture.
 pub struct ReferenceFrame {
+    /// The reference's picture.
     pub frame: Frame,
     /// Whether the reference had to be computed.
     pub computed: bool,
-    /// Why it could not be cached for the next time.
+    /// Why the picture could not be cached for the next time.
     pub not_cached: Option<Error>,
 }
 
@@ -53,7 +54,7 @@ impl<'a> ReferenceCache<'a> {
         }
     }
 
-    /// Pictures are cached in `folder`, which is created if it does not exist; those that were not used for
+    /// A cache of pictures in `folder`, which is created if it does not exist; those that were not used for
     /// thirty days, such as those of older programs, are removed from it.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use super::Table;
 /// A page about one volume or one run of an experiment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
-    /// A few words, such as `aneurism: speed against error`.
+    /// The page's title, a few words such as `aneurism: speed against error`.
     pub title: String,
     /// A sentence or two for somebody who knows nothing of this: what is seen here, how to read it.
     pub summary: String,
@@ -15,27 +15,33 @@ pub struct Report {
     pub command: String,
     /// The findings, a sentence each.
     pub findings: Vec<String>,
-    /// One per mode, or per table.
+    /// The parts of the page: one per mode, or per table.
     pub sections: Vec<Section>,
 }
 
 /// A part of a report; what is empty in it is not shown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
+    /// The section's heading.
     pub title: String,
     /// A sentence or two under the title.
     pub about: String,
+    /// Pictures to overlay.
     pub gallery: Option<Gallery>,
+    /// Pictures of other sections, side by side.
     pub pairs: Option<Pairs>,
+    /// Plots of time against error, one per metric.
     pub scatters: Vec<Scatter>,
+    /// A chart of stacked bars.
     pub bars: Option<Bars>,
+    /// The figures behind the pictures and plots.
     pub table: Option<Table>,
 }
 
 /// Pictures of one view, of one size, any two of which can be overlaid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Gallery {
-    /// The first is the reference that the others are held against.
+    /// The pictures; the first is the reference that the others are held against.
     pub pictures: Vec<Picture>,
     /// The number of the picture that the page opens on, beside the first: the most instructive one;
     /// without it the second.
@@ -45,14 +51,16 @@ pub struct Gallery {
 /// Pictures of two sections side by side, of one setting: such as a mode against another.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pairs {
-    /// The first is what the page opens on; those with fewer than two pictures are not shown.
+    /// The settings; the page opens on the first, and those with fewer than two pictures are not shown.
     pub settings: Vec<PairSetting>,
 }
 
 /// A setting and the pictures in it, any two of which can stand side by side.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PairSetting {
+    /// The setting's name.
     pub label: String,
+    /// The pictures that can be chosen, in the order in which they are listed.
     pub pictures: Vec<PairedPicture>,
 }
 
@@ -70,13 +78,14 @@ pub struct PairedPicture {
 /// A rendered picture, with where it is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Picture {
-    /// Short, and the only one of its name in the gallery: `exact`, `step 0.5`. A [`Point`] of the
+    /// A short name, unique in the gallery: `exact`, `step 0.5`. A [`Point`] of the
     /// same label in the same section leads to this picture.
     pub label: String,
     /// A line with the figures that matter: `12.3 ms, 4 of 2,311 hits missed`.
     pub caption: String,
     /// The bytes of a PNG file.
     pub png: Vec<u8>,
+    /// Where the picture differs from the reference; the reference itself has none.
     pub error_map: Option<ErrorMap>,
 }
 
@@ -87,7 +96,7 @@ pub struct ErrorMap {
     pub png: Vec<u8>,
     /// The quantity that is shown: `depth error`.
     pub label: String,
-    /// `voxels`; empty where the figure has none.
+    /// The quantity's unit, such as `voxels`; empty where it has none.
     pub unit: String,
     /// The colours between the smallest and the greatest error.
     pub scale: Scale,
@@ -98,9 +107,9 @@ pub struct ErrorMap {
 /// A bar of colours with figures under it. Places along it go from 0 to 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scale {
-    /// Place and sRGB colour, ascending; linear in sRGB between two.
+    /// Places and their sRGB colours, ascending; linear in sRGB between two.
     pub stops: Vec<(f64, [u8; 3])>,
-    /// Place and the error it stands for, at least at both ends.
+    /// Places and the errors they stand for, at least at both ends.
     pub ticks: Vec<(f64, f64)>,
 }
 
@@ -119,7 +128,9 @@ impl Scale {
 /// A colour that stands for one thing, sRGB.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mark {
+    /// The colour, sRGB.
     pub color: [u8; 3],
+    /// What the colour stands for, such as `missed hit`.
     pub meaning: String,
 }
 
@@ -130,9 +141,13 @@ pub struct Mark {
 /// under the plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scatter {
+    /// The plot's heading.
     pub title: String,
+    /// The horizontal axis, such as time.
     pub x: Axis,
+    /// The vertical axis, such as error.
     pub y: Axis,
+    /// The settings, one point each.
     pub points: Vec<Point>,
 }
 
@@ -141,19 +156,23 @@ pub struct Scatter {
 pub struct Axis {
     /// The name of what the axis shows, such as `time`.
     pub label: String,
-    /// `ms`; empty where the figure has none.
+    /// The quantity's unit, such as `ms`; empty where it has none.
     pub unit: String,
 }
 
 /// One setting in a [`Scatter`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Point {
+    /// The setting's name, unique among the points.
     pub label: String,
-    /// The family it belongs to, which has one colour and shape.
+    /// The family that the setting belongs to, which has one colour and shape.
     pub group: String,
+    /// The place along the horizontal axis, in its unit.
     pub x: f64,
+    /// The place along the vertical axis, in its unit.
     pub y: f64,
-    /// It is on the Pareto front: nothing more accurate is as fast, times within 10 % counting as equal.
+    /// Whether the setting is on the Pareto front: nothing more accurate is as fast, times within 10 %
+    /// counting as equal.
     pub on_front: bool,
     /// More figures, as name and value, shown when the point is pointed at.
     pub details: Vec<(String, String)>,
@@ -162,15 +181,19 @@ pub struct Point {
 /// Stacked horizontal bars.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
+    /// The chart's heading.
     pub title: String,
     /// The unit, such as `ms`.
     pub unit: String,
+    /// The bars, from the top.
     pub rows: Vec<Bar>,
 }
 
 /// One bar: its parts, such as the passes of a frame, as name and length, from the left.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bar {
+    /// The text beside the bar.
     pub label: String,
+    /// The parts, as name and length in the chart's unit.
     pub parts: Vec<(String, f64)>,
 }

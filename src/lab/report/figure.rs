@@ -1,6 +1,7 @@
 //! How a page writes a figure: three digits that count, powers of ten outside a readable span.
 
-/// `0`, `12.3`, `2311`, `−0.004`, `1.2×10⁻⁵`; infinities and NaN as `–`.
+/// A number to two or three significant digits: `0`, `12.3`, `2311`, `−0.004`, `1.2×10⁻⁵`; infinities
+/// and NaN as `–`.
 pub fn figure(number: f64) -> String {
     if !number.is_finite() {
         return "–".into();

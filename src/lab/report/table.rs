@@ -11,7 +11,9 @@ use super::figure::figure;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Cell {
+    /// Words, written as they are.
     Text(String),
+    /// A number, unrounded.
     Number(f64),
     /// There is no such figure.
     Nothing,
@@ -126,8 +128,11 @@ fn is_formula_like(text: &str) -> bool {
 /// A column: its name for programs (unit behind it), for people, and how it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
+    /// The name for programs, with the unit behind it: `frame_ms`.
     pub key: &'static str,
+    /// The name for people: `frame, ms`.
     pub title: &'static str,
+    /// How the column's numbers are written for people.
     pub shown: Shown,
 }
 
@@ -163,6 +168,7 @@ impl Table {
         self.push(row);
     }
 
+    /// The rows, each of as many cells as there are columns.
     pub fn rows(&self) -> &[Vec<Cell>] {
         &self.rows
     }
@@ -247,8 +253,9 @@ impl Table {
             && !cells.any(|cell| matches!(cell, Cell::Text(_)))
     }
 
-    /// RFC 4180, the keys in the first line; unrounded, empty where there is no figure. Text that a
-    /// spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
+    /// The table as CSV (RFC 4180), the keys in the first line; unrounded, empty where there is no figure.
+    ///
+    /// Text that a spreadsheet would take for a formula has an apostrophe in front, by which it is read as text.
     pub fn csv(&self) -> String {
         let keys = self.columns.iter().map(|column| column.key.to_owned());
         let mut text = keys.collect::<Vec<_>>().join(",") + "\r\n";
@@ -259,7 +266,7 @@ impl Table {
         text
     }
 
-    /// An object a row; unrounded, `null` where there is no figure.
+    /// The table as JSON, an object a row; unrounded, `null` where there is no figure.
     pub fn json(&self) -> Value {
         let object = |row: &Vec<Cell>| {
             let pairs = self.columns.iter().zip(row).map(|(column, cell)| {

@@ -49,11 +49,14 @@ pub const SEED: u64 = 1;
 /// The task for which a setting is chosen.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
+    /// The volume that is rendered.
     pub volume: &'a Volume,
+    /// The properties of the volume from which defaults are made.
     pub subject: &'a Subject,
     /// The options of the picture; of those that say how rays are followed, only what the bound does not
     /// decide ([`SceneOptions::undecided`]).
     pub options: &'a SceneOptions,
+    /// The error bound that is to be kept.
     pub bound: ErrorBound,
     /// The planes that are rendered afterwards: what the time is taken of.
     pub wanted: Wanted,
@@ -67,7 +70,9 @@ pub struct Task<'a> {
 /// A setting that keeps the bound, or the surest one.
 #[derive(Debug)]
 pub struct Choice {
+    /// The error bound that was asked for.
     pub bound: ErrorBound,
+    /// The chosen setting.
     pub setting: Setting,
     /// The scene under it, and the options that make it.
     pub resolved: Resolved,
@@ -75,28 +80,31 @@ pub struct Choice {
     pub met: bool,
     /// The error as verified, in the metric's unit.
     pub estimate: f64,
-    /// The error is at most this (psnr: at least) with [`CONFIDENCE`].
+    /// The upper confidence limit: the error is at most this (psnr: at least) with [`CONFIDENCE`].
     pub upper: f64,
+    /// How much was rendered to verify the choice.
     pub verified: Verified,
     /// Every candidate that was tried, in the grid's order.
     pub tried: Vec<Tried>,
+    /// What it cost to choose.
     pub cost: Cost,
 }
 
-/// Upon what a choice was verified.
+/// What a choice was verified on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
     /// The number of places of the camera.
     pub views: usize,
-    /// Fresh random ones; none where the tiles before were the whole picture.
+    /// The number of fresh random tiles; none where the tiles before were the whole picture.
     pub tiles: usize,
-    /// The reference's, in these tiles.
+    /// The number of the reference's rays in these tiles.
     pub rays: usize,
 }
 
 /// How a candidate did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tried {
+    /// The setting that was tried.
     pub setting: Setting,
     /// The time in the size it was last timed in, ms; of candidates within the bound.
     pub ms: Option<f64>,
@@ -109,14 +117,17 @@ pub struct Tried {
 /// The cost of the choice itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
+    /// The elapsed time, ms.
     pub ms: f64,
-    /// The reference's.
+    /// The number of rays that the reference cast.
     pub rays: u64,
-    /// The device's, whole pictures.
+    /// The number of whole pictures that the device rendered.
     pub renderings: usize,
-    /// The part of `ms` that went into building kernels and uploading.
+    /// The part of `ms` that went into building kernels.
     pub build_ms: f64,
+    /// The part of `ms` that went into uploading.
     pub upload_ms: f64,
+    /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
 }
 

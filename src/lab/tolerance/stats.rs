@@ -45,6 +45,7 @@ struct CostStats {
 }
 
 impl ToleranceStats {
+    /// The statistics of a choice.
     pub fn of(choice: &Choice) -> Self {
         let bound = choice.bound;
         let tried = choice.tried.iter().map(|tried| TriedStats {

@@ -87,12 +87,12 @@ mod tests {
             assert_eq!(check(&device, VoxelType::I16), Ok(()));
             let refused = check(&device, VoxelType::F32).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::Resource);
-            let said = refused.to_string();
+            let message = refused.to_string();
             assert!(
-                said.contains("10x10x10") && said.contains("4000 bytes"),
-                "{said}"
+                message.contains("10x10x10") && message.contains("4000 bytes"),
+                "{message}"
             );
-            assert!(said.contains("'small' gives 2000"), "{said}");
+            assert!(message.contains("'small' gives 2000"), "{message}");
         }
         assert!(check(&device(1999, 2000), VoxelType::I16).is_err());
         assert!(check(&device(2000, 1999), VoxelType::I16).is_err());

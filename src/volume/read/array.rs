@@ -110,10 +110,10 @@ impl Array {
     ) -> Result<Voxels> {
         let len = usize_voxels(self.dims)?;
         let size = self.element.scalar.bytes();
-        let (mut reader, at_most) = payload.into_reader();
-        if at_most < total {
+        let (mut reader, max_bytes) = payload.into_reader();
+        if max_bytes < total {
             return Err(Error::input(format!(
-                "{total} bytes of voxels announced, but the data cannot hold more than {at_most}"
+                "{total} bytes of voxels announced, but the data cannot hold more than {max_bytes}"
             )));
         }
         let read = |reader: &mut dyn Read| {

@@ -125,7 +125,7 @@ pub(super) fn joined(
             open,
             current: None,
         })),
-        at_most: total,
+        max_bytes: total,
     })
 }
 
@@ -149,10 +149,10 @@ impl Joined {
         };
         let payload = (self.open)(&path)
             .map_err(|error| io::Error::other(error.at(path.display()).to_string()))?;
-        let (reader, at_most) = payload.into_reader();
-        if at_most < self.share {
+        let (reader, max_bytes) = payload.into_reader();
+        if max_bytes < self.share {
             return Err(io::Error::other(format!(
-                "{}: cannot hold more than {at_most} bytes of its share of {}",
+                "{}: cannot hold more than {max_bytes} bytes of its share of {}",
                 path.display(),
                 self.share
             )));

@@ -52,10 +52,10 @@ impl Header {
             }
             Payload::Stream {
                 mut reader,
-                at_most,
+                max_bytes,
             } => {
                 let header = Self::read(&mut reader)?;
-                Ok((header, Payload::Stream { reader, at_most }))
+                Ok((header, Payload::Stream { reader, max_bytes }))
             }
         }
     }

@@ -83,10 +83,10 @@ impl BufRead for MappedBytes {
 pub(super) enum Payload {
     /// The bytes lie in a file unchanged.
     Mapped(MappedBytes),
-    /// The bytes come out of a decoder; no more than `at_most`.
+    /// The bytes come out of a decoder; no more than `max_bytes`.
     Stream {
         reader: Box<dyn BufRead>,
-        at_most: u64,
+        max_bytes: u64,
     },
 }
 
@@ -102,10 +102,10 @@ const BZIP2_BLOCK_BITS: u64 = 105 + 32 + 34 + 1;
 const BZIP2_BLOCK_BYTES: u64 = 900_000 / 5 * 259;
 
 impl Payload {
-    fn stream(reader: impl Read + 'static, at_most: u64) -> Self {
+    fn stream(reader: impl Read + 'static, max_bytes: u64) -> Self {
         Self::Stream {
             reader: Box::new(BufReader::with_capacity(1 << 16, reader)),
-            at_most,
+            max_bytes,
         }
     }
 
@@ -121,7 +121,7 @@ impl Payload {
                 let length = bytes.len();
                 (Box::new(bytes), length)
             }
-            Self::Stream { reader, at_most } => (reader, at_most),
+            Self::Stream { reader, max_bytes } => (reader, max_bytes),
         }
     }
 
@@ -178,11 +178,11 @@ impl Payload {
             Self::Mapped(bytes) => Ok(Self::Mapped(bytes.after(count)?)),
             Self::Stream {
                 mut reader,
-                at_most,
+                max_bytes,
             } => {
-                if count > at_most {
+                if count > max_bytes {
                     return Err(Error::input(format!(
-                        "the voxels should start {count} bytes in, but the data there cannot hold more than {at_most}"
+                        "the voxels should start {count} bytes in, but the data there cannot hold more than {max_bytes}"
                     )));
                 }
                 let skipped =
@@ -196,7 +196,7 @@ impl Payload {
                 }
                 Ok(Self::Stream {
                     reader,
-                    at_most: at_most.saturating_sub(count),
+                    max_bytes: max_bytes.saturating_sub(count),
                 })
             }
         }
@@ -218,7 +218,7 @@ impl Payload {
             }
             Self::Stream {
                 mut reader,
-                at_most,
+                max_bytes,
             } => {
                 for line in 0..count {
                     let read = reader
@@ -228,7 +228,7 @@ impl Payload {
                         return Err(missing(line));
                     }
                 }
-                Ok(Self::Stream { reader, at_most })
+                Ok(Self::Stream { reader, max_bytes })
             }
         }
     }

@@ -188,7 +188,7 @@ pub(super) fn is_named(path: &Path) -> bool {
 /// Reads headerless voxels as flags and name describe them.
 ///
 /// # Errors
-/// Size or type are said nowhere; the file is shorter than they ask for.
+/// Size or type are given nowhere; the file is shorter than they require.
 pub(super) fn read(source: Source, request: &Request) -> Result<Volume> {
     let layout = request.options.raw.or(RawLayout::from_name(request.path));
     let (Some(RawSize(dims)), Some(RawType(element))) = (layout.size, layout.element) else {

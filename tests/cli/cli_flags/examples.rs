@@ -138,7 +138,7 @@ fn prepare_peer(place: &Place) {
 /// Runs an example: that it succeeds and leaves what its `-o` names.
 ///
 /// # Errors
-/// What it said, where it does not.
+/// What it printed, where it does not.
 fn run(place: &Place, example: &str) -> Result<(), String> {
     let mut words = shlex::split(example).ok_or("no shell takes it")?;
     let mut array = false;
@@ -179,14 +179,14 @@ fn run(place: &Place, example: &str) -> Result<(), String> {
         Some(folder) if words[1] == "bench" => stopped_when_measured(command, &place.path(folder)),
         _ => command.output().unwrap(),
     };
-    let said = stderr(&output);
+    let messages = stderr(&output);
     let resumable = words[1] == "bench" && output.status.code() == Some(75);
     if !output.status.success() && !resumable {
-        let excused = example.contains(".mp4") && said.contains("ffmpeg") && !has_ffmpeg();
+        let excused = example.contains(".mp4") && messages.contains("ffmpeg") && !has_ffmpeg();
         return if excused {
             Ok(())
         } else {
-            Err(format!("{example}: {said}"))
+            Err(format!("{example}: {messages}"))
         };
     }
     let number = if array { "0003" } else { "0000" };
@@ -311,8 +311,8 @@ fn a_wrong_example_is_caught() {
         "angioroy render ball.nrrd -o b.png",
         "sbatch --wrap 'angioray render ball.nrrd -o b.png --mode miip'",
     ] {
-        let said = run(&place, &format!("{wrong} {reference}")).unwrap_err();
-        assert!(!place.path("b.png").exists(), "{said}");
+        let error = run(&place, &format!("{wrong} {reference}")).unwrap_err();
+        assert!(!place.path("b.png").exists(), "{error}");
     }
     // One that says nothing of its own, as a README's block of another language.
     assert_eq!(

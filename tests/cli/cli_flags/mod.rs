@@ -52,9 +52,9 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         .into_iter()
         .map(|command| place.refused(&format!("{command} --scene keys.toml"), 2))
         .collect();
-        let at = |said: &String| said.starts_with("error: keys.toml:2: ");
+        let at = |message: &String| message.starts_with("error: keys.toml:2: ");
         assert!(refusals.iter().any(at), "{key}: {refusals:?}");
-        let unknown = |said: &String| said.contains("not an option of a scene");
+        let unknown = |message: &String| message.contains("not an option of a scene");
         assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
     }
     // The controls: keys that no command has.
@@ -72,8 +72,8 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
             "completion",
             "man",
         ] {
-            let said = place.refused(&format!("{command} --scene keys.toml"), 2);
-            assert!(said.starts_with("error: keys.toml:2: "), "{said}");
+            let message = place.refused(&format!("{command} --scene keys.toml"), 2);
+            assert!(message.starts_with("error: keys.toml:2: "), "{message}");
         }
     }
 }
@@ -87,9 +87,12 @@ fn an_unknown_key_is_refused_with_the_nearest_one() {
         ("qqq", "hint: the options are "),
     ] {
         place.write("keys.toml", &format!("{key} = 1\n"));
-        let said = place.refused("compare --scene keys.toml", 2);
+        let message = place.refused("compare --scene keys.toml", 2);
         let error = format!("error: keys.toml:1: '{key}' is not an option of a scene");
-        assert!(said.contains(&error) && said.contains(hint), "{said}");
+        assert!(
+            message.contains(&error) && message.contains(hint),
+            "{message}"
+        );
     }
 }
 
@@ -104,14 +107,14 @@ fn what_is_no_whole_number_is_refused_in_words() {
             "'99999999999999999999' is too large a number",
         ),
     ] {
-        let said = place.refused(&format!("phantom noise -o n.nrrd --seed {wrong}"), 2);
-        assert!(said.contains(reported), "{said}");
+        let message = place.refused(&format!("phantom noise -o n.nrrd --seed {wrong}"), 2);
+        assert!(message.contains(reported), "{message}");
     }
     place.write("seed.toml", "seed = 2.5\n");
-    let said = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);
+    let message = place.refused("phantom noise -o n.nrrd --scene seed.toml", 2);
     assert!(
-        said.contains("'2.5' is not a whole number of at least 0"),
-        "{said}"
+        message.contains("'2.5' is not a whole number of at least 0"),
+        "{message}"
     );
 }
 
@@ -177,7 +180,7 @@ fn one_scene_file_serves_several_commands() {
 #[test]
 fn a_negative_number_reaches_its_flag() {
     let place = Place::with_ball();
-    let said = |command: &str, flag: &str| {
+    let refusal = |command: &str, flag: &str| {
         stderr(&place.run(&format!("{command} {flag} -1 --device reference")))
     };
     let render = "render ball.nrrd -o a.png";
@@ -209,10 +212,10 @@ fn a_negative_number_reaches_its_flag() {
         "--gradient-scale",
         "--gradient-smooth",
     ] {
-        let said = said(render, flag);
+        let message = refusal(render, flag);
         assert!(
-            said.contains("-1") && !said.contains("unexpected"),
-            "{said}"
+            message.contains("-1") && !message.contains("unexpected"),
+            "{message}"
         );
     }
     for flag in [
@@ -224,10 +227,10 @@ fn a_negative_number_reaches_its_flag() {
         "--noise",
     ] {
         let line = format!("phantom vessels -o v.nrrd {flag} -1");
-        let said = place.refused(&line, 2);
-        assert!(!said.contains("unexpected"), "{said}");
+        let message = place.refused(&line, 2);
+        assert!(!message.contains("unexpected"), "{message}");
     }
-    assert!(said(render, "--zoom").contains("a zoom of -1 is out of its domain"));
+    assert!(refusal(render, "--zoom").contains("a zoom of -1 is out of its domain"));
     // The control: where no number belongs it is unexpected.
-    assert!(said(render, "--skip").contains("unexpected"));
+    assert!(refusal(render, "--skip").contains("unexpected"));
 }

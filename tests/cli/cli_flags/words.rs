@@ -96,13 +96,13 @@ fn colours_have_names() {
         "rgb(1,2,3)",
     ] {
         let line = format!("render ball.nrrd -o b.png --background {wrong} {REFERENCE}");
-        let said = place.refused(&line, 2);
-        assert!(said.contains("is not a colour"), "{said}");
+        let message = place.refused(&line, 2);
+        assert!(message.contains("is not a colour"), "{message}");
     }
 }
 
 #[test]
-fn quiet_says_nothing_but_errors() {
+fn quiet_prints_nothing_but_errors() {
     let place = Place::with_ball();
     let line = format!("render ball.nrrd -o a.png {REFERENCE}");
     for (quiet, is_quiet) in [
@@ -132,11 +132,11 @@ fn quiet_says_nothing_but_errors() {
             "{command}"
         );
     }
-    // The control: an error is said.
-    let said = place.refused("render ball.nrrd -o a.png --quiet --mode x", 2);
-    assert!(said.starts_with("error: "), "{said}");
-    let said = place.refused("render none.nrrd -o a.png --quiet --device reference", 65);
-    assert!(said.contains("none.nrrd"), "{said}");
+    // The control: an error is printed.
+    let message = place.refused("render ball.nrrd -o a.png --quiet --mode x", 2);
+    assert!(message.starts_with("error: "), "{message}");
+    let message = place.refused("render none.nrrd -o a.png --quiet --device reference", 65);
+    assert!(message.contains("none.nrrd"), "{message}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! from the origin.
 
 use angioray::frame::{CERTIFICATE, KIND, Kind};
-use angioray::lab::measure::HitJudge;
+use angioray::lab::measure::HitChecker;
 
 use super::*;
 
@@ -271,7 +271,7 @@ struct Proven {
 
 impl Proven {
     fn add(&mut self, device: &Device, volume: &Volume, scene: &Scene) {
-        let judge = HitJudge::new(volume, scene).unwrap();
+        let checker = HitChecker::new(volume, scene).unwrap();
         let frame = on_device(device, volume, std::slice::from_ref(scene)).remove(0);
         let kinds = frame.plane(KIND).unwrap();
         let certificates = frame.plane(CERTIFICATE).unwrap();
@@ -279,14 +279,14 @@ impl Proven {
         for (pixel, (&kind, &certificate)) in kinds.iter().zip(certificates).enumerate() {
             let [x, y] = [pixel % width, pixel / width].map(|at| at as f64 + 0.5);
             let ray = scene.camera.ray(scene.size, x, y);
-            let reference = judge.reference(ray);
+            let reference = checker.reference(ray);
             let hits = reference.kind != Kind::Nothing;
             let says = [Some(false), Some(true), None][certificate as usize];
             self.rays += 1;
             self.differing += usize::from(hits != (kind != Kind::Nothing as u32));
             self.proven += usize::from(says.is_some());
             let is_wrong = says.is_some_and(|says| says != hits);
-            self.wrong += usize::from(is_wrong && judge.is_certain(ray, reference));
+            self.wrong += usize::from(is_wrong && checker.is_certain(ray, reference));
         }
     }
 }

@@ -33,8 +33,8 @@ fn metadata_comes_back_from_png_and_exr_alone() {
     }
     let path = folder.path().join("a.webp");
     write(&path, &picture(), &Encoding::new(Format::WebP), &METADATA).unwrap();
-    let said = read_metadata(&path).unwrap_err().to_string();
-    assert!(said.contains("neither a PNG nor an EXR"), "{said}");
+    let message = read_metadata(&path).unwrap_err().to_string();
+    assert!(message.contains("neither a PNG nor an EXR"), "{message}");
 }
 
 /// Reading ends, with an answer or a sentence, whatever a byte of the header says.

@@ -18,7 +18,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn webp_says_what_it_cannot_hold() {
+fn webp_reports_what_it_cannot_hold() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.webp");
     let size = ImageSize::new(16_384, 1).unwrap();
@@ -80,8 +80,8 @@ fn a_frame_without_the_plane_is_a_sentence() {
                 outcome.unwrap();
                 fs::remove_file(&path).unwrap();
             } else {
-                let said = outcome.unwrap_err().to_string();
-                assert!(said.contains(layer.name()), "{said}");
+                let message = outcome.unwrap_err().to_string();
+                assert!(message.contains(layer.name()), "{message}");
             }
             // What the encoding needs is enough.
             let wanted = Wanted::for_encoding(&encoding, false);
@@ -119,9 +119,9 @@ fn unwritable_places_leave_nothing_behind() {
         for path in places {
             let error = write(&path, &picture(), &encoding, &METADATA).unwrap_err();
             assert_eq!(error.exit_code(), 74);
-            let said = error.to_string();
-            assert!(said.starts_with(path.to_str().unwrap()), "{said}");
-            assert!(!said.contains('\n'), "{said}");
+            let message = error.to_string();
+            assert!(message.starts_with(path.to_str().unwrap()), "{message}");
+            assert!(!message.contains('\n'), "{message}");
         }
         // A full disk.
         let full = PathBuf::from("/dev/full");

@@ -27,7 +27,7 @@ fn damage(files: &[PathBuf], how: Damage) {
     }
 }
 
-fn said(output: &Output) -> String {
+fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -97,7 +97,7 @@ fn with_other_code(cached: &[u8]) -> Option<Vec<u8>> {
 
 #[cfg(target_arch = "x86_64")]
 #[test]
-fn a_cached_kernel_that_ends_the_process_says_so_and_is_removed() {
+fn a_cached_kernel_that_ends_the_process_is_reported_and_removed() {
     let Some(place) = Place::new() else { return };
     let own = place.rendered(&mut place.simple_command());
     fs::remove_file(place.path("picture.png")).unwrap();
@@ -108,7 +108,7 @@ fn a_cached_kernel_that_ends_the_process_says_so_and_is_removed() {
         fs::write(&path, other).unwrap();
     }
     let output = place.simple_command().output().unwrap();
-    let printed = said(&output);
+    let printed = stderr_of(&output);
     assert_eq!(output.status.code(), Some(74), "{output:?}");
     assert_eq!(printed.matches("error: ").count(), 1, "{printed}");
     for part in ["SIG", "the device", "the same command builds them again"] {

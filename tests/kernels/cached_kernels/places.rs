@@ -1,4 +1,4 @@
-//! Where kernels are cached, where the driver builds, and what is said where neither can be.
+//! Where kernels are cached, where the driver builds, and what is reported where neither can be.
 
 use std::fs;
 use std::path::Path;
@@ -6,22 +6,22 @@ use std::process::{Command, Output};
 
 use super::Place;
 
-fn said(output: &Output) -> String {
+fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Runs it; what it said, the picture being there.
+/// Runs it; what it printed on stderr, the picture being there.
 fn done(place: &Place, command: &mut Command) -> String {
     let output = command.output().unwrap();
     assert!(output.status.success(), "{output:?}");
     assert!(place.path("picture.png").exists());
     fs::remove_file(place.path("picture.png")).unwrap();
-    said(&output)
+    stderr_of(&output)
 }
 
 /// The folder in quotes that begins like this.
-fn named<'a>(said: &'a str, start: &str) -> Option<&'a Path> {
-    let mut quoted = said.split('\'').filter(|part| part.contains(start));
+fn named<'a>(messages: &'a str, start: &str) -> Option<&'a Path> {
+    let mut quoted = messages.split('\'').filter(|part| part.contains(start));
     quoted.next().map(Path::new)
 }
 
@@ -50,7 +50,7 @@ fn where_no_folder_can_be_written_a_private_one_is_used_and_named() {
         let folder = named(note, "angioray-driver-").unwrap();
         assert!(folder.is_absolute() && !folder.exists(), "{note}");
     }
-    // The control: where there is a folder nothing is said, and kernels are cached in it.
+    // The control: where there is a folder nothing is reported, and kernels are cached in it.
     let cache = place.path("cache");
     let printed = done(&place, &mut homeless(&cache));
     assert!(!printed.contains("not cached"), "{printed}");

@@ -156,7 +156,7 @@ fn touch_fault(walked: &Walked, leaf: u32) -> Option<String> {
             .sum();
         if !span.touch {
             if apart <= 1 {
-                return Some(format!("{leaves:?} are said not to touch"));
+                return Some(format!("{leaves:?} are reported not to touch"));
             }
             continue;
         }

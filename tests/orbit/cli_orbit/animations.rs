@@ -101,11 +101,11 @@ fn without_ffmpeg_a_video_is_refused_before_any_work() {
     };
     for name in ["a.mp4", "a.webm"] {
         let output = run(name);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(74), "{said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(74), "{messages}");
         assert!(
-            said.contains("ffmpeg") && said.contains("hint: install it"),
-            "{said}"
+            messages.contains("ffmpeg") && messages.contains("hint: install it"),
+            "{messages}"
         );
         assert!(!place.path(name).exists());
     }

@@ -27,8 +27,8 @@ fn every_frame_is_a_rendering(device: &str, again: &[u32]) {
         let [rendered, frame] = ["own.png".into(), format!("f/{name}")].map(|n| place.path(&n));
         assert_eq!(pixels(&rendered), pixels(&frame), "{k}");
         // What a rendering says of itself the frame says too.
-        for said in read_metadata(&rendered).unwrap() {
-            assert!(metadata.contains(&said), "{k}: {said:?}");
+        for pair in read_metadata(&rendered).unwrap() {
+            assert!(metadata.contains(&pair), "{k}: {pair:?}");
         }
         // And it is seen from where it should be.
         let named = format!("render {scene} --azimuth {} -o named.png {device}", 72 * k);
@@ -143,7 +143,7 @@ fn an_error_bound_chooses_one_setting_for_the_whole_orbit() {
     assert!(f64::from(coarse_max) > 0.03 * 255.0 + 1.0, "{coarse_max}");
     for flag in ["--resume", "--shard 0/2"] {
         let line = format!("{orbit} --max-error max:0.03 -o f/%02d.png {flag} {device}");
-        let said = stderr(&place.run(&line));
-        assert!(said.contains("cannot be combined"), "{said}");
+        let messages = stderr(&place.run(&line));
+        assert!(messages.contains("cannot be combined"), "{messages}");
     }
 }

@@ -73,23 +73,26 @@ fn orbits_that_make_no_sense_are_refused() {
         ("--frames 3 -o busy/more/%d.png", 74, "is not a folder"),
         ("--frames 3 -o none/a.gif", 74, "does not exist"),
     ] {
-        let said = place.refused(&format!("orbit v.nrrd {line} {REFERENCE}"), code);
-        assert!(said.contains(reason), "{line}: {said}");
+        let message = place.refused(&format!("orbit v.nrrd {line} {REFERENCE}"), code);
+        assert!(message.contains(reason), "{line}: {message}");
     }
     // Before the volume is looked for, and whatever the file is called by.
-    let said = place.refused(
+    let message = place.refused(
         &format!("orbit none.nrrd --frames 0 -o %d.png {REFERENCE}"),
         2,
     );
-    assert!(said.contains("an orbit of 0 frames"), "{said}");
+    assert!(message.contains("an orbit of 0 frames"), "{message}");
     #[cfg(unix)]
     {
         std::fs::create_dir(place.path("f")).unwrap();
         std::os::unix::fs::symlink("../v.nrrd", place.path("f/2.png")).unwrap();
         let line =
             |frames| format!("orbit v.nrrd --size 8 --frames {frames} -o f/%d.png {REFERENCE}");
-        let said = place.refused(&line(3), 2);
-        assert!(said.contains("writing frame 2 would replace it"), "{said}");
+        let message = place.refused(&line(3), 2);
+        assert!(
+            message.contains("writing frame 2 would replace it"),
+            "{message}"
+        );
         // The control: without that frame nothing is replaced.
         place.done(&line(2));
     }

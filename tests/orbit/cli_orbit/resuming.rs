@@ -39,25 +39,25 @@ fn resuming_makes_what_is_missing_torn_or_of_another_scene() {
         fs::copy(place.path(&format!("other/06.{extension}")), path(6)).unwrap();
 
         let output = place.run(&format!("{} --resume", line(&part, 70)));
-        let said = stderr(&output);
-        assert!(output.status.success(), "{said}");
-        assert!(said.contains(": 5 frames, 3 existed"), "{said}");
+        let messages = stderr(&output);
+        assert!(output.status.success(), "{messages}");
+        assert!(messages.contains(": 5 frames, 3 existed"), "{messages}");
         assert_eq!(contents(&place, &part), contents(&place, &whole));
         assert_eq!(before, [0, 4, 7].map(modified));
         // Nothing is left to do; of another scene, or coded otherwise, all is.
-        let said = stderr(&place.run(&format!("{} --resume", line(&part, 70))));
-        assert!(said.contains("nothing to do, 8 existed"), "{said}");
-        let said = stderr(&place.run(&format!("{} --resume --zoom 2", line(&part, 70))));
-        assert!(said.contains(": 8 frames, iso"), "{said}");
+        let messages = stderr(&place.run(&format!("{} --resume", line(&part, 70))));
+        assert!(messages.contains("nothing to do, 8 existed"), "{messages}");
+        let messages = stderr(&place.run(&format!("{} --resume --zoom 2", line(&part, 70))));
+        assert!(messages.contains(": 8 frames, iso"), "{messages}");
     }
     let eight = "orbit v.nrrd --iso 70 --size 16 --frames 8";
-    let said = stderr(&place.run(&format!(
+    let messages = stderr(&place.run(&format!(
         "{eight} -o png-whole/%02d.png --bit-depth 16 --resume {REFERENCE}"
     )));
-    assert!(said.contains(": 8 frames, iso"), "{said}");
+    assert!(messages.contains(": 8 frames, iso"), "{messages}");
     // Without --resume frames are made anew.
-    let said = stderr(&place.run(&format!("{eight} -o png-part/%02d.png {REFERENCE}")));
-    assert!(said.contains(": 8 frames, iso"), "{said}");
+    let messages = stderr(&place.run(&format!("{eight} -o png-part/%02d.png {REFERENCE}")));
+    assert!(messages.contains(": 8 frames, iso"), "{messages}");
 }
 
 #[test]
@@ -69,11 +69,11 @@ fn frames_of_another_volume_under_its_name_are_made_again() {
     let made = contents(&place, "f");
     // The control: written anew, but the same.
     place.done("phantom vessels -o v.nrrd --size 24 --seed 2");
-    let said = stderr(&place.run(&line));
-    assert!(said.contains("nothing to do, 3 existed"), "{said}");
+    let messages = stderr(&place.run(&line));
+    assert!(messages.contains("nothing to do, 3 existed"), "{messages}");
     place.done("phantom vessels -o v.nrrd --size 24 --seed 3");
-    let said = stderr(&place.run(&line));
-    assert!(said.contains(": 3 frames, iso"), "{said}");
+    let messages = stderr(&place.run(&line));
+    assert!(messages.contains(": 3 frames, iso"), "{messages}");
     assert_ne!(contents(&place, "f"), made);
 }
 
@@ -91,10 +91,10 @@ fn frames_by_another_device_are_made_again() {
             )
         };
         place.done(&line(REFERENCE));
-        let said = stderr(&place.run(&line(&device)));
-        assert!(said.contains(": 2 frames, iso"), "{said}");
+        let messages = stderr(&place.run(&line(&device)));
+        assert!(messages.contains(": 2 frames, iso"), "{messages}");
         // The control.
-        let said = stderr(&place.run(&line(&device)));
-        assert!(said.contains("nothing to do, 2 existed"), "{said}");
+        let messages = stderr(&place.run(&line(&device)));
+        assert!(messages.contains("nothing to do, 2 existed"), "{messages}");
     }
 }

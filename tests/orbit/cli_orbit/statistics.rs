@@ -60,8 +60,8 @@ fn they_are_written_where_nothing_was_made_too() {
     place.done(&format!("{orbit} --frames 2 --stats s.json"));
     assert_eq!(place.json("s.json")["orbit"]["kept"], 0);
     assert_eq!(place.json("s.json")["frames"][1]["index"], 1);
-    let said = stderr(&place.run(&format!("{orbit} --frames 2 --resume --stats s.json")));
-    assert!(said.contains("nothing to do, 2 existed"), "{said}");
+    let messages = stderr(&place.run(&format!("{orbit} --frames 2 --resume --stats s.json")));
+    assert!(messages.contains("nothing to do, 2 existed"), "{messages}");
     let stats = place.json("s.json");
     assert_eq!(stats["orbit"]["kept"], 2);
     assert_eq!(stats["frames"], serde_json::json!([]));

@@ -41,11 +41,11 @@ fn a_stopped_orbit_leaves_whole_frames_and_is_resumed() {
     });
     terminate(&child);
     let output = child.wait_with_output().unwrap();
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(75), "{said}");
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(75), "{messages}");
     assert!(
-        said.contains("stopped early: ") && said.contains("--resume"),
-        "{said}"
+        messages.contains("stopped early: ") && messages.contains("--resume"),
+        "{messages}"
     );
     let stopped = contents(&place, "f");
     assert!((3..60).contains(&stopped.len()), "{}", stopped.len());
@@ -56,14 +56,14 @@ fn a_stopped_orbit_leaves_whole_frames_and_is_resumed() {
         assert_eq!(pixels(&place.path(&format!("f/{name}"))).len(), 48 * 48 * 3);
     }
     assert!(
-        said.contains(&format!("{} of 60 frames", stopped.len())),
-        "{said}"
+        messages.contains(&format!("{} of 60 frames", stopped.len())),
+        "{messages}"
     );
 
-    let said = stderr(&place.run(&format!("{} --resume", line("f"))));
+    let messages = stderr(&place.run(&format!("{} --resume", line("f"))));
     let (made, kept) = (60 - stopped.len(), stopped.len());
     let counted = format!(": {made} frames, {kept} existed");
-    assert!(said.contains(&counted), "{said}");
+    assert!(messages.contains(&counted), "{messages}");
     place.done(&line("whole"));
     assert_eq!(contents(&place, "f"), contents(&place, "whole"));
 }
@@ -82,15 +82,15 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
         let output = stopped(&place, &line("f/a"), &frames, |names| {
             names.iter().filter(|name| name.ends_with(".png")).count() >= 3
         });
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(75), "{said}");
+        let messages = stderr(&output);
+        assert_eq!(output.status.code(), Some(75), "{messages}");
         let made = contents(&place, &frames).len();
         assert!((3..40).contains(&made), "{made}");
         let counted =
             format!("stopped early: {made} of 40 frames are finished and saved in {frames}");
         assert!(
-            said.contains(&counted) && said.contains("--resume"),
-            "{said}"
+            messages.contains(&counted) && messages.contains("--resume"),
+            "{messages}"
         );
         let names = |folder: &str| -> Vec<_> {
             let entries = fs::read_dir(place.path(folder)).unwrap();
@@ -100,9 +100,9 @@ fn a_stopped_animation_keeps_its_frames_and_is_resumed_to_the_same_bytes() {
 
         // A frame that is torn is made again.
         fs::write(place.path(&format!("{frames}/000001.png")), "torn").unwrap();
-        let said = stderr(&place.run(&format!("{} --resume", line("f/a"))));
+        let messages = stderr(&place.run(&format!("{} --resume", line("f/a"))));
         let counted = format!(": {} frames, {} existed", 41 - made, made - 1);
-        assert!(said.contains(&counted), "{said}");
+        assert!(messages.contains(&counted), "{messages}");
         assert_eq!(names("f"), [format!("a.{format}").as_str()]);
         place.done(&line("whole"));
         let bytes = |name: &str| fs::read(place.path(&format!("{name}.{format}"))).unwrap();
@@ -124,16 +124,19 @@ fn finished_frames_of_an_animation_are_joined_and_others_are_made_anew() {
     place.done(&line(1));
     let right = fs::read(place.path("a.gif")).unwrap();
     keep(1);
-    let said = stderr(&place.run(&format!("{} --resume", line(1))));
-    assert!(said.contains("wrote a.gif of 4 existing frames"), "{said}");
+    let messages = stderr(&place.run(&format!("{} --resume", line(1))));
+    assert!(
+        messages.contains("wrote a.gif of 4 existing frames"),
+        "{messages}"
+    );
     assert!(fs::read(place.path("a.gif")).unwrap() == right);
     assert!(!place.path("a.gif.frames").exists());
     // Of another scene, and without --resume; what else lies in the folder stays.
     for (zoom, resume) in [(2, "--resume"), (1, "")] {
         keep(zoom);
         fs::write(place.path("a.gif.frames/notes.txt"), "mine").unwrap();
-        let said = stderr(&place.run(&format!("{} {resume}", line(1))));
-        assert!(said.contains(": 4 frames, iso"), "{said}");
+        let messages = stderr(&place.run(&format!("{} {resume}", line(1))));
+        assert!(messages.contains(": 4 frames, iso"), "{messages}");
         assert!(fs::read(place.path("a.gif")).unwrap() == right);
         let left: Vec<_> = contents(&place, "a.gif.frames").into_keys().collect();
         assert_eq!(left, ["notes.txt"]);
@@ -155,7 +158,7 @@ fn stopped(
 }
 
 #[test]
-fn a_stopped_orbit_tells_what_it_made() {
+fn a_stopped_orbit_reports_what_it_made() {
     let place = place();
     let line = format!(
         "orbit v.nrrd --iso 70 --size 48 --frames 60 -o f/%02d.png --stats s.json {REFERENCE}"
@@ -181,16 +184,16 @@ fn an_orbit_under_an_error_bound_is_resumed_with_the_flags_that_were_chosen() {
     let output = stopped(&place, &line, "f", |names| {
         names.iter().filter(|n| n.ends_with(".png")).count() >= 2
     });
-    let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(75), "{said}");
-    let (_, hint) = said.split_once("--resume, and with ").unwrap();
+    let messages = stderr(&output);
+    assert_eq!(output.status.code(), Some(75), "{messages}");
+    let (_, hint) = messages.split_once("--resume, and with ").unwrap();
     let (flags, _) = hint.split_once(" instead of --max-error").unwrap();
     let made = contents(&place, "f").len();
     let metadata = read_metadata(&place.path("f/000.png")).unwrap();
 
-    let said = stderr(&place.run(&format!("{orbit} {flags} --resume {device}")));
+    let messages = stderr(&place.run(&format!("{orbit} {flags} --resume {device}")));
     let counted = format!(": {} frames, {made} existed", 400 - made);
-    assert!(said.contains(&counted), "{flags}: {said}");
+    assert!(messages.contains(&counted), "{flags}: {messages}");
     assert_eq!(read_metadata(&place.path("f/000.png")).unwrap(), metadata);
 }
 
@@ -221,14 +224,14 @@ fn a_second_signal_ends_it_at_once_with_the_same_status() {
         terminate(&child);
         let ended = child.wait_with_output().unwrap();
         assert_eq!(ended.status.code(), Some(code), "{output}");
-        let said = stderr(&ended);
-        let lines: Vec<&str> = said.lines().collect();
-        assert_eq!(lines.len(), 2, "{output}: {said}");
+        let messages = stderr(&ended);
+        let lines: Vec<&str> = messages.lines().collect();
+        assert_eq!(lines.len(), 2, "{output}: {messages}");
         assert!(
             lines[0].starts_with("note: stopping after the current frame"),
-            "{said}"
+            "{messages}"
         );
-        assert!(lines[1].starts_with("error: stopped at once"), "{said}");
+        assert!(lines[1].starts_with("error: stopped at once"), "{messages}");
         // Neither pictures nor what was to become one.
         let mut there: Vec<_> = fs::read_dir(&folder).unwrap().collect();
         there.retain(|entry| entry.as_ref().is_ok_and(|entry| entry.path().is_file()));

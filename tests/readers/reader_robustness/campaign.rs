@@ -24,7 +24,7 @@ const ONE_VARIABLE: &str = "ANGIORAY_FUZZ_ONE";
 /// Beyond the file's own bytes, of which none has many.
 const MAX_MEMORY: usize = 16 << 20;
 
-/// A case that takes this long never ends: its number is said before the program is given up.
+/// A case that takes this long never ends: its number is printed before the program is given up.
 const HANG: Duration = Duration::from_secs(120);
 
 /// What came of one case.
@@ -63,7 +63,7 @@ fn joined(parts: impl Iterator<Item = (&'static str, Figures)>) -> ByKind {
     all
 }
 
-/// Takes the cases one by one; what is wrong is said with the case's number.
+/// Takes the cases one by one; what is wrong is reported with the case's number.
 fn take(
     cases: impl Iterator<Item = u64>,
     check: impl Fn(u64) -> Outcome,

@@ -25,13 +25,13 @@ fn refused_memory_ends_the_program_in_words_unless_it_is_an_error() {
         .env(VARIABLE, "1")
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(74), "{said}");
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(74), "{messages}");
     assert!(
-        said.contains("error: out of memory: 4611686018427387904 bytes"),
-        "{said}"
+        messages.contains("error: out of memory: 4611686018427387904 bytes"),
+        "{messages}"
     );
-    assert!(said.contains("\nhint: "), "{said}");
+    assert!(messages.contains("\nhint: "), "{messages}");
     // The control: what grows with a volume is an error, and the program continues.
     assert_eq!(room::<u8>(ABSURD, "it").unwrap_err().exit_code(), 74);
     let layout = Layout::from_size_align(64, 8).unwrap();

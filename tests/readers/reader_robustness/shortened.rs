@@ -90,13 +90,16 @@ fn a_shortened_volume_ends_the_program_in_words() {
         return;
     }
     let cut = run("cut");
-    let said = String::from_utf8_lossy(&cut.stderr).into_owned();
-    assert_eq!(cut.status.code(), Some(74), "{said}");
-    let lines: Vec<&str> = said.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(lines.len(), 1, "{said}");
+    let messages = String::from_utf8_lossy(&cut.stderr).into_owned();
+    assert_eq!(cut.status.code(), Some(74), "{messages}");
+    let lines: Vec<&str> = messages
+        .lines()
+        .filter(|l| l.starts_with("error: "))
+        .collect();
+    assert_eq!(lines.len(), 1, "{messages}");
     assert!(
         lines[0].contains("cut_64x64x64_u8.raw: the file was shortened"),
-        "{said}"
+        "{messages}"
     );
     // The controls: what is whole, or no longer mapped, is no end; without asking, and for what is
     // another's, the signal is what it was.

@@ -61,10 +61,10 @@ pub fn renders(color: &str, depth: Option<&str>) -> String {
     let file =
         |name: &str| format!(r#""$(printf '%s' "$line" | sed 's/.*"{name}":"\([^"]*\)".*/\1/')""#);
     let write = |name: &str, bytes: &str| format!("printf '{bytes}' >{}", file(name));
-    let depth_said = depth.is_some();
+    let has_depth = depth.is_some();
     let depth = depth.map_or(":".into(), |bytes| write("depth", bytes));
     format!(
-        "*'\"color\"'*) {}; {depth}; echo '{{\"ms\":7,\"cpu_ms\":13,\"depth\":{depth_said}}}' ;;\n\
+        "*'\"color\"'*) {}; {depth}; echo '{{\"ms\":7,\"cpu_ms\":13,\"depth\":{has_depth}}}' ;;\n\
          *'\"render\"'*) echo '{{\"ms\":6}}' ;;",
         write("color", color)
     )

@@ -20,24 +20,27 @@ use crate::scene::{
     Camera, Gradient, Lens, Light, Picture, Ray, Refine, Rgb, Sampling, Scene, Tone,
 };
 
-use crate::lab::measure::{Answer, HitJudge, HitVerdict};
+use crate::lab::measure::{Answer, HitChecker, HitVerdict};
 
 pub use rays::{Aim, AimedRay, rays};
 pub use volumes::{Target, target};
 
 use glam::DVec3;
 
-/// Answers of one aim.
+/// The counts of answers for the rays of one aim.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tally {
+    /// Rays that were cast.
     pub rays: u64,
     /// Rays for which the reference hits something.
     pub hits: u64,
+    /// Rays for which the reference hits something and the answer is nothing.
     pub missed: u64,
+    /// Rays for which the answer is a hit and the reference hits nothing.
     pub extra: u64,
-    /// Hits at another place than the reference's, by more than [`HitJudge::APART_VOXELS`].
+    /// Hits at another place than the reference's, by more than [`HitChecker::APART_VOXELS`].
     pub displaced: u64,
-    /// Other answers that are the reference's of a ray within [`HitJudge::NEAR_VOXELS`].
+    /// Other answers that are the reference's of a ray within [`HitChecker::NEAR_VOXELS`].
     pub borderline: u64,
     /// Answers that are not proven.
     pub undecided: u64,
@@ -48,7 +51,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Answers that are wrong.
+    /// The number of wrong answers.
     pub fn wrong(&self) -> u64 {
         self.missed + self.extra + self.displaced + self.wrongly_proven
     }
@@ -71,7 +74,7 @@ impl Tally {
 /// The tallies of all aims, and the first rays that went wrong.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Report {
-    /// One an aim, in the order of [`Aim::ALL`].
+    /// One tally per aim, in the order of [`Aim::ALL`].
     pub tallies: [Tally; Aim::ALL.len()],
     /// Details of wrong answers, for finding the fault: target number, ray, answer, verdict.
     pub wrong: Vec<String>,
@@ -81,6 +84,7 @@ impl Report {
     /// The most rays that are listed.
     const MAX_LISTED: usize = 12;
 
+    /// The tally over all aims.
     pub fn total(&self) -> Tally {
         self.tallies.into_iter().fold(Tally::default(), Tally::add)
     }
@@ -198,11 +202,11 @@ fn check(
 ) -> Result<Report> {
     let mut report = Report::default();
     let scene = scene_of(target)?;
-    let judge = HitJudge::new(&target.volume, &scene)?;
+    let checker = HitChecker::new(&target.volume, &scene)?;
     let tallies: Vec<(Tally, Option<String>)> = aimed
         .par_iter()
         .zip(crossings)
-        .map(|(ray, crossing)| check_one(&judge, number, ray, crossing))
+        .map(|(ray, crossing)| check_one(&checker, number, ray, crossing))
         .collect();
     for (ray, (tally, wrong)) in aimed.iter().zip(tallies) {
         let of = &mut report.tallies[ray.aim as usize];
@@ -215,7 +219,7 @@ fn check(
 }
 
 fn check_one(
-    judge: &HitJudge,
+    checker: &HitChecker,
     number: u64,
     aimed: &AimedRay,
     crossing: &FirstCrossing,
@@ -234,8 +238,8 @@ fn check_one(
     } else {
         0.0
     };
-    let reference = judge.reference(ray);
-    let verdict = judge.verdict(ray, reference, answer, resolution);
+    let reference = checker.reference(ray);
+    let verdict = checker.verdict(ray, reference, answer, resolution);
     let proven = match crossing.certificate {
         Certificate::Hit => Some(true),
         Certificate::Miss => Some(false),
@@ -247,7 +251,7 @@ fn check_one(
         hits: u64::from(hit),
         undecided: u64::from(proven.is_none()),
         wrongly_proven: u64::from(
-            proven.is_some_and(|proven| proven != hit) && judge.is_certain(ray, reference),
+            proven.is_some_and(|proven| proven != hit) && checker.is_certain(ray, reference),
         ),
         ..Tally::default()
     };

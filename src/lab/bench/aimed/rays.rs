@@ -29,6 +29,7 @@ pub enum Aim {
 }
 
 impl Aim {
+    /// All aims, in the order of their discriminants.
     pub const ALL: [Self; 7] = [
         Self::Corner,
         Self::Edge,
@@ -39,6 +40,7 @@ impl Aim {
         Self::FromInside,
     ];
 
+    /// The aim's name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Corner => "corner",
@@ -55,7 +57,9 @@ impl Aim {
 /// A ray in index space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AimedRay {
+    /// The feature at which the ray is aimed.
     pub aim: Aim,
+    /// The ray's first point, in index space.
     pub origin: [f32; 3],
     /// The direction, in index units per unit of t.
     pub dir: [f32; 3],

@@ -10,9 +10,11 @@ use crate::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 /// A volume of unit spacing at the world's origin, so that world and index space are one, and the
 /// iso value of the surface in it.
 pub struct Target {
+    /// The voxels; they start at the world's origin, 1 mm apart.
     pub volume: Volume,
-    /// A number that single precision holds.
+    /// The surface's iso value, physical: a number that single precision holds.
     pub iso: f64,
+    /// Whether the surface is closed by caps where it leaves the volume.
     pub caps: bool,
 }
 

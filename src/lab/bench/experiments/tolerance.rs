@@ -437,9 +437,9 @@ mod tests {
             let rows = outcome.table.json();
             assert_eq!(rows[0]["met"], 100.0);
             assert_eq!(rows[0]["kept"], 100.0 - broken as f64);
-            let said = outcome.findings.join("\n");
-            assert!(said.contains("in 75.0 % of 100 scenes"), "{said}");
-            assert_eq!(said.matches("is off").count(), broken, "{said}");
+            let findings = outcome.findings.join("\n");
+            assert!(findings.contains("in 75.0 % of 100 scenes"), "{findings}");
+            assert_eq!(findings.matches("is off").count(), broken, "{findings}");
             assert_eq!(outcome.sections[0].scatters[0].points.len(), 100);
         }
         let failure = of(&trials(100, 2)).failure.unwrap();
@@ -453,8 +453,8 @@ mod tests {
         }
         let outcome = of(&unmet);
         assert_eq!(outcome.failure, None);
-        let said = outcome.findings.join("\n");
-        assert!(!said.contains("NaN"), "{said}");
+        let findings = outcome.findings.join("\n");
+        assert!(!findings.contains("NaN"), "{findings}");
         assert_eq!(of(&[]).failure, None);
     }
 

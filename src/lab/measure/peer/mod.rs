@@ -48,18 +48,20 @@ pub struct PeerScene {
     id: u64,
     size: ImageSize,
     tone: Tone,
-    /// The time of what is done once for the scene, such as extracting a mesh.
+    /// The time of what is done once for the scene, such as extracting a mesh, ms.
     pub ready_ms: f64,
-    /// How its picture differs from what the scene says, other than by sampling.
+    /// How the peer's picture differs from what the scene says, other than by sampling.
     pub note: Option<String>,
 }
 
 /// The readiness of a peer to draw a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Readiness {
+    /// The scene is prepared, and can be drawn.
     Ready(PeerScene),
     /// The peer cannot draw such a scene.
     Unsupported {
+        /// The peer's reason.
         why: String,
     },
 }
@@ -67,14 +69,16 @@ pub enum Readiness {
 /// The time of one picture, from the camera set to pixels that the host can read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeerTime {
+    /// The elapsed time, ms.
     pub ms: f64,
-    /// The processor time of all its threads.
+    /// The processor time of all the peer's threads, ms.
     pub cpu_ms: Option<f64>,
 }
 
 /// A picture of a peer.
 #[derive(Debug, Clone)]
 pub struct PeerFrame {
+    /// The time that the picture took.
     pub time: PeerTime,
     /// The picture: its colour, the display computed from it by the scene's tone curve, and the depth if
     /// the peer writes it.
@@ -122,6 +126,7 @@ impl Peer {
         &self.name
     }
 
+    /// The version that the peer gives of itself.
     pub fn version(&self) -> &str {
         &self.version
     }
@@ -131,15 +136,15 @@ impl Peer {
         &self.device
     }
 
-    /// The names of its settings for a mode, by the mode's name.
+    /// The names of the peer's settings for a mode, by the mode's name.
     pub fn settings(&self, mode: &str) -> Vec<String> {
         let able = |setting: &&OfferedSetting| setting.modes.iter().any(|m| m == mode);
         let settings = self.settings.iter().filter(able);
         settings.map(|setting| setting.name.clone()).collect()
     }
 
-    /// Gives it a volume in the place of the one before, whose scenes it forgets, and returns the time that it
-    /// reports, ms.
+    /// Gives the peer a volume in place of the one before, whose scenes it forgets, and returns the loading
+    /// time that it reports, ms.
     ///
     /// # Errors
     /// The temporary folder has no room; the peer fails.
@@ -180,7 +185,7 @@ impl Peer {
         }))
     }
 
-    /// Makes it drop all scenes, and what it holds for them.
+    /// Makes the peer drop all scenes, and what it holds for them.
     ///
     /// # Errors
     /// The peer fails.

@@ -15,4 +15,4 @@ function button(attributes, text, press) {
   return made;
 }
 
-const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
+const clamp = (value, min, max) => Math.min(Math.max(value, min), max);

@@ -1,6 +1,6 @@
 // What viewers share: pictures in stages that are moved and magnified together.
 
-const MOST_ZOOM = 32;
+const MAX_ZOOM = 32;
 
 class Magnified {
   zoom = 1;
@@ -38,7 +38,7 @@ class Magnified {
   }
 
   magnify(zoom) {
-    this.zoom = clamp(zoom, 1, MOST_ZOOM);
+    this.zoom = clamp(zoom, 1, MAX_ZOOM);
     this.move(0, 0);
   }
 
@@ -51,7 +51,7 @@ class Magnified {
 
   magnifyThere(event, stage) {
     const [x, y] = placeIn(stage, event);
-    if (this.zoom >= MOST_ZOOM) return this.magnify(1);
+    if (this.zoom >= MAX_ZOOM) return this.magnify(1);
     this.center = this.center.map((c, axis) => c + ([x, y][axis] - 0.5) / this.zoom / 2);
     return this.magnify(2 * this.zoom);
   }
@@ -97,7 +97,7 @@ class Magnified {
     frame.classList.toggle('zoomed', this.zoom > 1);
     this.factor.textContent = this.zoom === 1 ? 'fit' : `${this.zoom}×`;
     this.less.disabled = this.zoom === 1;
-    this.more.disabled = this.zoom === MOST_ZOOM;
+    this.more.disabled = this.zoom === MAX_ZOOM;
   }
 }
 

@@ -121,8 +121,8 @@ class Scatter {
       line(x, top, x, bottom, minor);
       text(x, bottom + 18, 'middle', 'tick', words);
     }
-    const least = this.points.some(({ y }) => y > 0) ? this.axes[1].marks : [];
-    for (const { at, text: words, minor } of least) {
+    const marks = this.points.some(({ y }) => y > 0) ? this.axes[1].marks : [];
+    for (const { at, text: words, minor } of marks) {
       const y = this.placeY(10 ** at);
       line(left, y, right, y, minor);
       text(left - 8, y + 4, 'end', 'tick', words);
@@ -132,7 +132,7 @@ class Scatter {
     return parts;
   }
 
-  /** The least error for the time that there is: level until the next point of the front, then down. */
+  /** The smallest error within each time: level until the next point of the front, then down. */
   front() {
     const best = this.points.filter(({ onFront }) => onFront);
     if (!best.length) return [];

@@ -292,10 +292,10 @@ fn evaluated(
     let scene = &candidate.scene;
     let counting = Wanted::DISPLAY.with(Layer::COUNTERS);
     let counted = renderer.render(scene, counting)?.frame;
-    let judging = evaluated_planes(&scene.picture)
+    let compared = evaluated_planes(&scene.picture)
         .without(Layer::COUNTERS)
         .without([Layer::Kind]);
-    let frame = renderer.render(scene, judging)?.frame;
+    let frame = renderer.render(scene, compared)?.frame;
     Ok(TimedRow {
         runner: Runner::Ours,
         kind: Some(candidate.kind),

@@ -67,21 +67,27 @@ use group::Keys;
 #[derive(Debug, Clone, PartialEq, Default, clap::Args, serde::Serialize)]
 #[command(mut_args(help::completed))]
 pub struct SceneOptions {
+    /// The volume and how it is read.
     #[command(flatten)]
     #[serde(flatten)]
     pub volume: VolumeOptions,
+    /// What is shown of it.
     #[command(flatten)]
     #[serde(flatten)]
     pub picture: PictureOptions,
+    /// From where it is seen.
     #[command(flatten)]
     #[serde(flatten)]
     pub camera: CameraOptions,
+    /// Where it is cut open.
     #[command(flatten)]
     #[serde(flatten)]
     pub clip: ClipOptions,
+    /// How rays are followed.
     #[command(flatten)]
     #[serde(flatten)]
     pub sampling: SamplingOptions,
+    /// How the picture is displayed.
     #[command(flatten)]
     #[serde(flatten)]
     pub tone: ToneOptions,

@@ -12,6 +12,7 @@ use crate::subject::Subject;
 /// A scene, the options that make it, and what was chosen for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resolved {
+    /// The scene, with every default applied.
     pub scene: Scene,
     /// The options that make the same scene with nothing left to a default: what pictures and statistics
     /// store.

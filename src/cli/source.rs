@@ -39,7 +39,7 @@ impl Source {
     /// The volume's file as the options describe it, checked as far as is possible without reading it.
     ///
     /// # Errors
-    /// No volume named; a layout or leaf edge that makes no sense.
+    /// No volume named; a layout that makes no sense.
     pub fn of(options: &VolumeOptions) -> Result<Self> {
         let Some(file) = &options.volume else {
             return Err(Error::usage("no volume was named")
@@ -49,10 +49,6 @@ impl Source {
         let size = size.map(|text| text.0.parse::<RawSize>());
         let element = options.raw_type.as_ref();
         let element = element.map(|text| text.parse::<RawType>());
-        let leaf = match options.octree_leaf {
-            Some(edge) => Leaf::new(edge).map_err(|e| e.at("octree-leaf"))?,
-            None => Leaf::default(),
-        };
         let raw = RawLayout {
             size: size.transpose().map_err(|e| e.at("raw-size"))?,
             element: element.transpose().map_err(|e| e.at("raw-type"))?,
@@ -65,7 +61,7 @@ impl Source {
         };
         Ok(Self {
             path: file.0.clone(),
-            leaf,
+            leaf: options.octree_leaf.unwrap_or_default(),
             read: ReadOptions {
                 frame: options.frame.unwrap_or(0),
                 non_finite,
@@ -85,7 +81,7 @@ impl Source {
     #[must_use]
     pub fn stored(&self, mut options: SceneOptions) -> SceneOptions {
         options.volume.volume = Some(FilePath(self.path.clone()));
-        options.volume.octree_leaf = Some(self.leaf.edge());
+        options.volume.octree_leaf = Some(self.leaf);
         options
     }
 

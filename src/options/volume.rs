@@ -9,6 +9,7 @@ use super::group::group;
 use super::quantities::SigmaMm;
 use super::text_form::{self, text_form};
 use super::triple::SpacingMm;
+use crate::octree::Leaf;
 
 /// A file's path. In a scene file, relative to that file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,7 +53,7 @@ impl std::fmt::Display for RawSizeText {
     }
 }
 
-text_form!(RawSizeText);
+text_form!(Leaf, RawSizeText);
 
 group! {
     /// The volume and how it is read.
@@ -94,7 +95,7 @@ group! {
         /// Edge of the octree's leaves in cells (a cell lies between 8 voxel centres), 4 to 32; never
         /// changes the picture
         #[arg(long, value_name = "CELLS", allow_hyphen_values = true)]
-        octree_leaf: u32,
+        octree_leaf: Leaf,
     }
 }
 

@@ -51,7 +51,7 @@ const MAY_USE: &[(&str, &[&[&str]])] = &[
     ("subject", &[]),
     ("volume", &[]),
     ("scene", &[]),
-    ("options", &[&["scene"]]),
+    ("options", &[&["scene", "octree"]]),
     ("frame", &[]),
     ("gpu", &[]),
     ("octree", &[&["volume"]]),

@@ -4,11 +4,12 @@
 // Reads kind and value of cast_maximum; the window is in stored units like it. Writes color.
 #include "lib/light/color.clh"
 #include "lib/ray/planes.clh"
+#include "lib/ray/source.clh"
 
-kernel void window_value(RayGrid rays, float2 window, const global uint *kind, const global float *value,
+kernel void window_value(RAY_SOURCE, float2 window, const global uint *kind, const global float *value,
                          global float4 *color)
 {
-    Pixels pixels = tile_pixels(rays);
+    Pixels pixels = RAY_PIXELS();
     // Halves, so that the widest window does not overflow; one too narrow for single precision is a step
     // (its ends are equal only where white is the higher one).
     Floats above = 0.5f * read_floats(value, pixels) - 0.5f * window.x;

@@ -121,6 +121,8 @@ pub enum Backend {
 /// A frame and how it came about.
 pub struct Rendered {
     pub frame: Frame,
+    /// The rays of each round of casting.
+    pub rays_per_round: Vec<u64>,
     pub device: DeviceStats,
     /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
@@ -130,6 +132,13 @@ pub struct Rendered {
     pub device_bytes: u64,
     /// The bytes uploaded from host to device.
     pub uploaded_bytes: u64,
+}
+
+impl Rendered {
+    /// All rays that were cast.
+    pub fn rays(&self) -> u64 {
+        self.rays_per_round.iter().sum()
+    }
 }
 
 impl Backend {
@@ -254,6 +263,7 @@ impl Caster<'_> {
                 progress.end();
                 Ok(Rendered {
                     frame: rendering.frame,
+                    rays_per_round: rendering.rays_per_round,
                     device: device.info().into(),
                     times_ms: Times {
                         octree: *octree_ms,
@@ -299,8 +309,10 @@ fn by_reference(
     let began = Instant::now();
     let frame = reference::render(volume, scene, wanted, progress)?;
     let render_ms = ms_since(began);
+    let rays = u64::from(scene.anti_aliasing.rays()) * frame.size.pixels() as u64;
     Ok(Rendered {
         frame,
+        rays_per_round: vec![rays],
         device: reference_stats(),
         times_ms: Times {
             render: render_ms,

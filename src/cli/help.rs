@@ -20,6 +20,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "refine", "how a hit is refined"),
     ("", "diffuse", "light reflected in all directions"),
     ("", "gradient-scale", "voxels from one to the next"),
+    ("", "refill", "the blocks that are cast too"),
     ("", "lmip-threshold", "the value from which a local maximum counts"),
     ("", "raw-type", "Voxel type of a headerless raw file, such as u16be"),
     ("", "raw-offset", "Bytes before a headerless raw file's voxels"),

@@ -23,10 +23,11 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, separated by commas, or all that the mode has. In dvr depth, normal and value are
-        /// means along the ray, weighted as its light is, where the opacity is at least 0.01. certificate
-        /// is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a device
-        /// prove nothing: 2 everywhere
+        /// certificate, coverage, separated by commas, or all that the mode has. In dvr depth, normal and
+        /// value are means along the ray, weighted as its light is, where the opacity is at least 0.01.
+        /// cast is 0 where --sparse filled a pixel; coverage is the share of a pixel's rays that hit.
+        /// certificate is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a
+        /// device prove nothing: 2 everywhere
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 

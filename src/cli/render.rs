@@ -29,6 +29,8 @@ use super::tolerance::choose;
   angioray render head.nrrd -o head.png --mode mip --view left --zoom 1.5
   angioray render cta.nii.gz -o cta.png --mode dvr --tf cta --shading phong --carm 'LAO 30 CRA 20'
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
+  angioray render head.nrrd -o head.png --aa 4:adaptive
+  angioray render head.nrrd -o head.png --mode mip --sparse 4 --refill flood
   angioray render head.nrrd -o head.png --mode mip --max-error rmse:0.002
   angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference
   angioray render --scene head.png -o left.png --view left --size 1024x1024")]
@@ -175,6 +177,7 @@ fn write_stats(
         return Ok(());
     };
     let chosen = choice.map_or(Cost::default(), |choice| choice.cost);
+    let rays = rendered.rays();
     let stats = Stats {
         version: VERSION,
         command: drawing.command,
@@ -184,7 +187,8 @@ fn write_stats(
         channels: frame::channels(&files.encoding),
         times_ms,
         passes: rendered.passes,
-        counts: Counts::of(&rendered.frame, &resolved.scene.picture),
+        counts: Counts::of(&rendered.frame, &resolved.scene.picture, rays),
+        rays_per_round: rendered.rays_per_round,
         memory: Memory::now(
             rendered.device_bytes,
             rendered.gradients.map_or(0, |figures| figures.bytes),

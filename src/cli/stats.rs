@@ -28,6 +28,9 @@ pub struct Stats<'a> {
     pub times_ms: Times,
     pub passes: Vec<PassStats>,
     pub counts: Counts,
+    /// The rays of each round of casting; of a single picture.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rays_per_round: Vec<u64>,
     pub memory: Memory,
     /// Where an error bound decided how rays are followed.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -98,6 +98,8 @@ layers! {
     Kind, KIND: u32 = Some(FillValue::Count(Kind::Nothing as u32)), "kind", ["kind.V"];
     /// A [`Certificate`] as a number.
     Certificate, CERTIFICATE: u32 = Some(FillValue::Count(Certificate::Undecided as u32)), "certificate", ["certificate.V"];
+    /// The share of a pixel's rays that met something.
+    Coverage, COVERAGE: f32 = Some(FillValue::Scalar(0.0)), "coverage", ["coverage.V"];
 }
 
 impl Layer {

@@ -26,9 +26,7 @@ mod write;
 pub use animation::{Animation, AnimationFormat, FrameRate, Reel};
 pub use contents::Frame;
 pub use format::{BitDepth, Encoding, Format, channels};
-pub use layer::{
-    CAST, CERTIFICATE, DEPTH, FillValue, KIND, Key, Layer, NODES, NORMAL, STEPS, VALUE,
-};
+pub use layer::*;
 pub use layers::{Layers, Plane, PlaneEntry};
 pub use metadata::{carrier, read_encoding, read_metadata};
 pub use percentile::{median, percentile};

@@ -64,6 +64,11 @@ impl Wanted {
         self.layers[layer as usize]
     }
 
+    /// Whether any layer is wanted.
+    pub fn has_layers(&self) -> bool {
+        self.layers().next().is_some()
+    }
+
     /// Whether any of these layers is wanted.
     pub fn has_any<const N: usize>(&self, layers: [Layer; N]) -> bool {
         layers.into_iter().any(|layer| self.has(layer))

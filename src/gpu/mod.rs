@@ -29,4 +29,4 @@ pub use memory::{AnyBuffer, Buffer};
 pub use pass::{Launch, Pass};
 pub use program::Defines;
 pub use source::{files, flatten};
-pub use timing::{PassTime, Timings};
+pub use timing::{FrameTimes, PassTime, Timings};

@@ -5,7 +5,7 @@ use super::group::Keys;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
-use crate::scene::{Mode, SamplingMethod};
+use crate::scene::{Mode, SamplingMethod, Sparse};
 
 /// The order in which needs are checked: that an option belongs to another mode says more than that
 /// something else is missing.
@@ -34,6 +34,9 @@ impl SceneOptions {
                 quad.sampling()
             ))
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
+        }
+        if let Some(grid) = self.sampling.sparse {
+            Sparse::new(grid, self.sampling.refill, self.mode())?;
         }
         let voxels = self.sampling.voxels.unwrap_or_default();
         voxels.check(self.method(), self.sampling.filter.unwrap_or_default())?;
@@ -79,6 +82,7 @@ impl SceneOptions {
             }
             Need::Eye => self.camera.eye.is_some(),
             Need::Homogeneity => self.picture.homogeneity.is_some(),
+            Need::Sparse => self.sampling.sparse.is_some(),
             // Of options beside the scene.
             Need::OpenCl
             | Need::Layered
@@ -120,6 +124,9 @@ impl SceneOptions {
             Need::Homogeneity => Error::usage(format!(
                 "'homogeneity-rule' {} has no effect without 'homogeneity', its limit",
                 self.picture.homogeneity_rule.unwrap_or_default()
+            )),
+            Need::Sparse => Error::usage(format!(
+                "'{option}' has no effect without 'sparse': every pixel is cast"
             )),
             _ => Error::usage(format!(
                 "'{option}' has no effect in mode '{mode}' without shading"

@@ -47,6 +47,14 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "",
     },
     Contradiction {
+        is_in: |all| {
+            let many_rays = all.sampling.aa.is_some_and(|aa| aa.rays() > 1);
+            many_rays && all.sampling.sparse.is_some()
+        },
+        sentence: "'aa' and 'sparse' cannot be combined: one casts many rays in a pixel, the other none in most",
+        hint: "",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -135,6 +143,15 @@ pub(super) const REPLACED: &[Replaced] = &[
     Replaced {
         by: |flags, file| flags.picture.homogeneity.is_some() && is_adaptive(file),
         options: &["quad"],
+    },
+    // Many rays in a pixel replace rays in few pixels, and the other way round.
+    Replaced {
+        by: |flags, _| flags.sampling.aa.is_some_and(|aa| aa.rays() > 1),
+        options: &["sparse", "refill"],
+    },
+    Replaced {
+        by: |flags, _| flags.sampling.sparse.is_some(),
+        options: &["aa"],
     },
     // An eye replaces a view and a view an eye, each with what turns it.
     Replaced {

@@ -63,6 +63,7 @@ fn label(rule: &Rule) -> Option<String> {
         Need::Precomputed(_) => Some("precomputed gradients".to_owned()),
         Need::Eye => Some("with --eye".to_owned()),
         Need::Homogeneity => Some("with --homogeneity".to_owned()),
+        Need::Sparse => Some("with --sparse".to_owned()),
         _ => None,
     });
     let steps = rule

@@ -63,6 +63,7 @@ mod tests {
             (carm, "view = 'left'"),
             (carm, "azimuth = 10"),
             (carm, "elevation = 10"),
+            ("aa = 4", "sparse = 4"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
         ];

@@ -67,7 +67,8 @@ impl SceneOptions {
         } = given.picture.resolve(self.quadrature(), subject)?;
         let (size, camera, of_camera) = given.camera.resolve(subject)?;
         let (clip_planes, of_clip) = given.clip.resolve()?;
-        let (sampling, of_sampling) = given.sampling.resolve(method);
+        let (sampling, mut of_sampling) = given.sampling.resolve(method);
+        let sparse = of_sampling.resolve_sparse(picture.mode())?;
         let (tone, of_tone) = given.tone.resolve();
         let scene = Scene {
             size,
@@ -75,6 +76,8 @@ impl SceneOptions {
             picture,
             clip_planes,
             sampling,
+            anti_aliasing: of_sampling.aa.unwrap_or_default(),
+            sparse,
             light,
             gradient,
             tone,

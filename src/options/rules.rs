@@ -14,9 +14,9 @@ use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
 use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
-    Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode, Picture, Quadrature,
-    Refine, Reflectance, Sampling, SamplingMethod, Shininess, SrgbColor, StepVoxels, Storage,
-    Termination, TransferFile, View,
+    AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode,
+    Picture, Quadrature, Refill, Refine, Reflectance, Sampling, SamplingMethod, Shininess,
+    SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
 };
 
 /// The options among which a name is unique.
@@ -63,6 +63,8 @@ pub(crate) enum Need {
     Eye,
     /// A limit of homogeneity.
     Homogeneity,
+    /// Sparse casting.
+    Sparse,
     /// An OpenCL device: the reference has none.
     OpenCl,
     /// A picture file that holds layers.
@@ -161,7 +163,7 @@ pub(crate) const RULES: &[Rule] = &[
     scene("raw-offset", What, &[])
         .default(|| 0.to_string()),
     scene("octree-leaf", What, &[])
-        .default(|| Leaf::default().edge().to_string()),
+        .default(text::<Leaf>),
 
     scene("sampling", HowWithinBound, &[])
         .default(default_sampling),
@@ -177,6 +179,10 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| Switch::from(Sampling::default().probe).to_string()),
     scene("voxels", How, &[])
         .default(text::<Storage>),
+
+    scene("aa", What, &[]).default(text::<AntiAliasing>),
+    scene("sparse", HowWithinBound, &[]).default(|| "every pixel".to_owned()),
+    scene("refill", HowWithinBound, &[Need::Sparse]).default(default_refill),
 
     scene("mode", What, &[])
         .default(text::<Mode>),
@@ -291,6 +297,15 @@ fn default_quadrature() -> String {
          cost out of proportion: spacings more than {UNLIKE_SPACINGS} times apart, or more than \
          {MANY_SAMPLES} samples per ray",
         Quadrature::default()
+    )
+}
+
+fn default_refill() -> String {
+    format!(
+        "{} where --sparse has a threshold, {} in iso, {} elsewhere",
+        Refill::Gradient,
+        Refill::of(Mode::Iso),
+        Refill::of(Mode::Mip)
     )
 }
 

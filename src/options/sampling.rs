@@ -3,9 +3,22 @@
 use super::enum_names::Switch;
 use super::group::group;
 use super::text_form::text_form;
-use crate::scene::{Filter, Sampling, SamplingMethod, StepVoxels, Storage, Traverse};
+use crate::error::Result;
+use crate::scene::{
+    AntiAliasing, Filter, Mode, Refill, Sampling, SamplingMethod, Sparse, SparseGrid, StepVoxels,
+    Storage, Traverse,
+};
 
-text_form!(Filter, SamplingMethod, StepVoxels, Storage, Traverse);
+text_form!(
+    AntiAliasing,
+    Filter,
+    Refill,
+    SamplingMethod,
+    SparseGrid,
+    StepVoxels,
+    Storage,
+    Traverse
+);
 
 group! {
     /// How rays are followed through the volume.
@@ -45,6 +58,23 @@ group! {
         /// on most GPUs with weights of eight bits
         #[arg(long, value_name = "buffer|image|filtered")]
         voxels: Storage,
+
+        /// Rays in every pixel, N x N, whose mean is its colour, N from 1 to 8; or N:adaptive, one ray in
+        /// pixels where more would show nothing else
+        #[arg(long, value_name = "N[:adaptive]", allow_hyphen_values = true)]
+        aa: AntiAliasing,
+
+        /// Cast every K-th pixel along each axis, 2, 3, 4 or 8, and fill the others where --refill allows it.
+        /// THRESHOLD: the greatest difference of neighbouring cast pixels' channels, sRGB-encoded from 0
+        /// to 1, that is not refilled, 0.05 by default
+        #[arg(long, value_name = "K[:THRESHOLD]", allow_hyphen_values = true)]
+        sparse: SparseGrid,
+
+        /// The blocks of pixels that are cast and not interpolated: none; gradient, those whose corners
+        /// differ; flood, also those whose edges do, until there is no further one; or certified (iso), those
+        /// that are not proven to be empty, so that no pixel is lost
+        #[arg(long, value_name = "NAME")]
+        refill: Refill,
     }
 }
 
@@ -53,6 +83,8 @@ impl SamplingOptions {
     /// and has none.
     pub(super) fn resolve(self, method: SamplingMethod) -> (Sampling, Self) {
         let default = Sampling::default();
+        let anti_aliasing = self.aa.unwrap_or_default();
+        let (sparse, refill) = (self.sparse, self.refill);
         let given = match method {
             SamplingMethod::Fixed => self,
             SamplingMethod::Exact => Self {
@@ -79,7 +111,22 @@ impl SamplingOptions {
             skip: Some(sampling.skip.into()),
             probe: is_fixed.then_some(sampling.probe.into()),
             voxels: Some(sampling.voxels),
+            aa: Some(anti_aliasing),
+            sparse,
+            refill,
         };
         (sampling, options)
+    }
+
+    /// Makes sparse casting in a mode, where it is wanted, and puts down the options that make the same.
+    ///
+    /// # Errors
+    /// As [`Sparse::new`].
+    pub(super) fn resolve_sparse(&mut self, mode: Mode) -> Result<Option<Sparse>> {
+        let sparse = self.sparse.map(|grid| Sparse::new(grid, self.refill, mode));
+        let sparse = sparse.transpose()?;
+        self.sparse = sparse.map(Sparse::grid);
+        self.refill = sparse.map(|sparse| sparse.refill);
+        Ok(sparse)
     }
 }

@@ -30,8 +30,8 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{
-    CERTIFICATE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layers, NORMAL, PlaneEntry, STEPS,
-    VALUE, Wanted,
+    CERTIFICATE, COVERAGE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layers, NORMAL, PlaneEntry,
+    STEPS, VALUE, Wanted,
 };
 use crate::progress::Progress;
 use crate::scene::{Picture, Scene};
@@ -57,7 +57,7 @@ pub fn render(
     progress.begin("reference", u64::from(size.height()));
     for first in (0..size.height()).step_by(BAND_ROWS as usize) {
         let rows = BAND_ROWS.min(size.height() - first);
-        let band: Vec<RayResult> = (first * width..(first + rows) * width)
+        let band: Vec<PixelResult> = (first * width..(first + rows) * width)
             .into_par_iter()
             .map(|pixel| cast_pixel(&tracer, scene, pixel))
             .collect();
@@ -88,7 +88,7 @@ pub fn render_pixels(
     let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;
     progress.begin("reference", pixels.len() as u64);
     for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {
-        let results: Vec<RayResult> = some
+        let results: Vec<PixelResult> = some
             .par_iter()
             .map(|&pixel| cast_pixel(&tracer, scene, pixel))
             .collect();
@@ -101,12 +101,38 @@ pub fn render_pixels(
     Ok(frame)
 }
 
-/// Casts the ray of a pixel's centre, the pixels counted row by row.
-fn cast_pixel(tracer: &Tracer, scene: &Scene, pixel: u32) -> RayResult {
+/// What is seen in a pixel.
+struct PixelResult {
+    /// The ray through its centre, which its layers are of.
+    center: RayResult,
+    /// The mean of its rays: linear light, premultiplied.
+    color: [f64; 4],
+    /// The share of its rays that meet something.
+    coverage: f64,
+}
+
+/// Casts the rays of a pixel, the pixels counted row by row: that of its centre, and where there is
+/// anti-aliasing as many as that asks for, whether it is adaptive or not.
+fn cast_pixel(tracer: &Tracer, scene: &Scene, pixel: u32) -> PixelResult {
     let width = scene.size.width();
-    let (x, y) = (pixel % width, pixel / width);
-    let (x_px, y_px) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-    tracer.cast(scene.camera.ray(scene.size, x_px, y_px))
+    let (x, y) = (f64::from(pixel % width), f64::from(pixel / width));
+    let cast = |[dx, dy]: [f64; 2]| tracer.cast(scene.camera.ray(scene.size, x + dx, y + dy));
+    let center = cast([0.5, 0.5]);
+    let aa = scene.anti_aliasing;
+    let (mut sum, mut met) = ([0.0; 4], 0);
+    for place in aa.places_px() {
+        let ray = if aa.rays() == 1 { center } else { cast(place) };
+        for (sum, channel) in sum.iter_mut().zip(ray.color) {
+            *sum += channel;
+        }
+        met += u32::from(ray.kind != Kind::Nothing);
+    }
+    let rays = f64::from(aa.rays());
+    PixelResult {
+        center,
+        color: sum.map(|channel| channel / rays),
+        coverage: f64::from(met) / rays,
+    }
 }
 
 /// Double precision decides every ray but those whose own cubics touch the iso value to the last bit;
@@ -120,23 +146,25 @@ fn certificate(result: &RayResult, scene: &Scene) -> Certificate {
 }
 
 /// Fills one pixel of every plane that is there.
-fn fill(frame: &mut Frame, pixel: usize, result: &RayResult, scene: &Scene) {
+fn fill(frame: &mut Frame, pixel: usize, seen: &PixelResult, scene: &Scene) {
     fn set<T: PlaneEntry>(layers: &mut Layers, key: Key<T>, pixel: usize, entry: T) {
         if let Some(plane) = layers.plane_mut(key) {
             plane[pixel] = entry;
         }
     }
     let narrowed = |v: DVec3| v.to_array().map(|c| c as f32);
-    frame.color[pixel] = result.color.map(|c| c as f32);
+    frame.color[pixel] = seen.color.map(|c| c as f32);
     if let Some(plane) = &mut frame.display {
-        plane[pixel] = display(result.color, &scene.tone).map(|c| c as f32);
+        plane[pixel] = display(seen.color, &scene.tone).map(|c| c as f32);
     }
+    let result = &seen.center;
     let layers = &mut frame.layers;
     set(layers, DEPTH, pixel, result.depth_mm as f32);
     set(layers, NORMAL, pixel, narrowed(result.normal_world));
     set(layers, VALUE, pixel, result.value as f32);
     set(layers, STEPS, pixel, result.cells);
     set(layers, KIND, pixel, result.kind as u32);
+    set(layers, COVERAGE, pixel, seen.coverage as f32);
     set(
         layers,
         CERTIFICATE,

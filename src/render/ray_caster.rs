@@ -8,7 +8,7 @@ use crate::scene::{Refine, Sampling};
 use crate::volume::Volume;
 
 use super::abi::{KernelEnum, Lanes, StoredIso, SurfaceCast, Variant};
-use super::occupancy::{Criterion, Occupancy};
+use super::occupancy::{Criterion, Occupancy, OccupancyTables};
 use super::passes::{CastInputs, Passes, Run, exact_surface};
 use super::resources::{DeviceClip, DeviceLayers, HeldVolume, IndexRay, RaySource};
 
@@ -58,7 +58,13 @@ impl<'a> RayCaster<'a> {
         let (on_device, voxels) = held.upload(device, volume, octree, sampling.voxels)?;
         let iso = StoredIso::exactly(volume.rescale(), iso);
         let criterion = Criterion::Iso(iso);
-        let occupancy = Occupancy::upload(device, volume, octree, &sampling, criterion)?;
+        let occupancy = Occupancy::upload(
+            device,
+            volume,
+            octree,
+            OccupancyTables::of(&sampling, false),
+            criterion,
+        )?;
         let world_from_index = volume.geometry().world_from_index();
         let clip = DeviceClip::upload(device, &[], world_from_index)?;
         let rays = RaySource::of_rays(device, rays)?;
@@ -69,6 +75,7 @@ impl<'a> RayCaster<'a> {
             device,
             passes: &mut self.passes,
             timings: &mut timings,
+            announcing: false,
             rays,
             work_group: Some([1, 1]),
             variant: Variant::of(volume, octree, &sampling, self.lanes),

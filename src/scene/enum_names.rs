@@ -1,7 +1,7 @@
 //! The names of a scene's choices, by which users write them.
 
 use super::{
-    Filter, HomogeneityRule, Mode, QuadratureMethod, RefineMethod, SamplingMethod, Storage,
+    Filter, HomogeneityRule, Mode, QuadratureMethod, Refill, RefineMethod, SamplingMethod, Storage,
     Traverse, View,
 };
 
@@ -57,6 +57,8 @@ enum_names!(QuadratureMethod, "a quadrature": Riemann = "riemann", Midpoint = "m
     Simpson = "simpson", Romberg = "romberg", Rk4 = "rk4", Preintegrated = "preintegrated",
     Adaptive = "adaptive");
 enum_names!(HomogeneityRule, "a rule for homogeneous nodes": Optical = "optical", Range = "range");
+enum_names!(Refill, "a refill": None = "none", Gradient = "gradient", Flood = "flood",
+    Certified = "certified");
 enum_names!(Traverse, "a traversal": Uniform = "uniform", KdRestart = "kd-restart",
     Hierarchical = "hierarchical", Revelles = "revelles", Distance = "distance");
 enum_names!(Storage, "a way to hold voxels": Buffer = "buffer", Image = "image", Filtered = "filtered");

@@ -5,6 +5,7 @@
 //!
 //! [`Scene::of_mode`] makes a scene with every default in its place.
 
+mod antialias;
 mod camera;
 mod clip;
 mod color;
@@ -18,6 +19,7 @@ mod picture;
 mod quadrature;
 pub(crate) mod quantities;
 mod sampling;
+mod sparse;
 mod srgb_color;
 pub(crate) mod toml_error;
 mod tone;
@@ -25,6 +27,7 @@ mod transfer;
 mod transfer_file;
 mod view;
 
+pub use antialias::AntiAliasing;
 pub use camera::{Camera, Lens, Ray};
 pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
@@ -40,6 +43,7 @@ pub use quantities::{
     StepVoxels, Termination,
 };
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse};
+pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
 pub use tone::Tone;
 pub use transfer::{Knot, TransferFunction};
@@ -63,6 +67,10 @@ pub struct Scene {
     pub clip_planes: Vec<ClipPlane>,
     /// How rays are followed.
     pub sampling: Sampling,
+    /// How many rays a pixel has.
+    pub anti_aliasing: AntiAliasing,
+    /// Which pixels have rays of their own; `None`: all.
+    pub sparse: Option<Sparse>,
     /// The light source for shading.
     pub light: Light,
     /// How gradients are computed for normals, in the layer and in shading.
@@ -93,6 +101,8 @@ impl Scene {
             picture,
             clip_planes: Vec::new(),
             sampling,
+            anti_aliasing: AntiAliasing::OFF,
+            sparse: None,
             light: Light::default(),
             gradient: Gradient::default(),
             tone: Tone::default(),

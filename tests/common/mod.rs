@@ -141,6 +141,8 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         },
         light: Light::default(),
         gradient: Gradient::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         tone: Tone::default(),
     }
 }

@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod agreement;
+mod anti_aliasing;
 mod clip_planes;
 mod edge_scenes;
 mod exact;
@@ -16,5 +17,6 @@ mod quadrature;
 mod ray_sources;
 mod refinement;
 mod sampling_alone;
+mod sparse;
 mod termination;
 mod voxel_images;

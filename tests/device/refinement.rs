@@ -76,6 +76,8 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         },
         light: Light::default(),
         gradient: Gradient::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;

@@ -159,6 +159,10 @@ fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
         };
         names.extend(words.filter(of_switch).map(str::to_owned));
     }
+    // A kernel whose work-items are no tiles takes one number of lanes alone.
+    let only = kernel
+        .lines()
+        .find_map(|line| line.strip_prefix("#if LANES != "));
     let values = |name: &str| {
         let prefix = format!("{name}_");
         let named: Vec<String> = given
@@ -166,7 +170,11 @@ fn switches(kernel: &str, variant: &str) -> Vec<(String, Vec<String>)> {
             .filter(|(constant, _)| constant.starts_with(&prefix))
             .map(|(_, value)| (*value).to_owned())
             .collect();
-        if name == "LANES" {
+        if name == "LANES"
+            && let Some(only) = only
+        {
+            vec![only.to_owned()]
+        } else if name == "LANES" {
             Lanes::ALL.map(|lanes| lanes.to_string()).to_vec()
         } else if named.is_empty() {
             vec!["0".to_owned(), "1".to_owned()]
@@ -324,7 +332,7 @@ fn every_pass_becomes_code_for_gpus() {
         let switches = switches(&flatten(path).unwrap(), &variant);
         let last = |(name, values): (String, Vec<String>)| {
             let value = match name.as_str() {
-                "LANES" => "1".to_owned(),
+                "LANES" => values[0].clone(),
                 _ => values.last().unwrap().clone(),
             };
             (name, value)
@@ -385,7 +393,7 @@ fn the_switches_are_read_from_the_kernels() {
     };
     assert_eq!(
         of("pass/cast_surface.cl"),
-        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2), ("RAYS", 3)])
+        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2), ("RAYS", 4)])
     );
     assert_eq!(
         of("pass/cast_maximum.cl"),
@@ -394,7 +402,7 @@ fn the_switches_are_read_from_the_kernels() {
             ("LANES", 3),
             ("LAYERS", 2),
             ("PROJECTION", 3),
-            ("RAYS", 3)
+            ("RAYS", 4)
         ])
     );
     assert_eq!(
@@ -407,19 +415,21 @@ fn the_switches_are_read_from_the_kernels() {
             ("LAYERS", 2),
             ("NORMALS", 2),
             ("QUADRATURE", 6),
-            ("RAYS", 3),
+            ("RAYS", 4),
             ("SHADED", 2)
         ])
     );
     assert_eq!(
         of("pass/surface_normal.cl"),
-        named(&[("GRADIENT", 4), ("LANES", 3), ("RAYS", 3)])
+        named(&[("GRADIENT", 4), ("LANES", 3), ("RAYS", 4)])
     );
     assert_eq!(
         of("pass/shade_surface.cl"),
-        named(&[("LANES", 3), ("SHADED", 2)])
+        named(&[("LANES", 3), ("RAYS", 4), ("SHADED", 2)])
     );
     assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
+    // Work-items that are no tiles of rays have one number of lanes.
+    assert_eq!(of("pass/mark_uncertain.cl"), named(&[("LANES", 1)]));
 }
 
 #[test]

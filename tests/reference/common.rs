@@ -75,6 +75,8 @@ pub fn scene(picture: Picture) -> Scene {
         sampling: Sampling::default(),
         light: Light::Headlight,
         gradient: Gradient::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         tone: Tone::default(),
     }
 }

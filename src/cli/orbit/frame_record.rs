@@ -24,10 +24,11 @@ impl FrameRecord {
     /// The record, and the frame itself.
     pub fn of(rendered: Rendered, picture: &Picture, plan: &Plan) -> (Self, Frame) {
         let counted = plan.stats.as_ref();
+        let rays = rendered.rays();
         let record = Self {
             times_ms: rendered.times_ms,
             passes: rendered.passes,
-            counts: counted.map(|_| Counts::of(&rendered.frame, picture)),
+            counts: counted.map(|_| Counts::of(&rendered.frame, picture, rays)),
             gradients: rendered.gradients,
             device_bytes: rendered.device_bytes,
             uploaded_bytes: rendered.uploaded_bytes,

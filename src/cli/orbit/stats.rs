@@ -42,6 +42,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
                 ..times_ms
             },
             passes: passes_of_all(written),
+            rays_per_round: Vec::new(),
             counts: written.iter().filter_map(|w| w.about.counts).sum(),
             memory: Memory::now(
                 max_device_bytes.unwrap_or(0),

@@ -195,6 +195,8 @@ pub fn through(volume: &Volume, point: DVec3, toward: DVec3, emission: Emission)
         picture: Picture::Emission(emission),
         clip_planes: Vec::new(),
         sampling: Default::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         light: Default::default(),
         gradient: Default::default(),
         tone: Default::default(),

@@ -8,13 +8,13 @@ use crate::scene::Picture;
 /// Counters summed over a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// Rays cast, one per pixel.
+    /// Rays cast.
     pub rays: u64,
     /// Samples taken, or cells visited.
     pub samples: u64,
     /// Hierarchy nodes visited.
     pub nodes: u64,
-    /// Rays that hit something.
+    /// Pixels that hit something.
     pub hits: u64,
     /// Pixels of which neither a hit nor a miss is proven; where the certificate was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -22,8 +22,9 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// The counters of a frame that has counters and kinds. In emission a hit is a pixel with any opacity.
-    pub fn of(frame: &Frame, picture: &Picture) -> Self {
+    /// The counters of a frame that has counters and kinds, for which so many `rays` were cast. In emission a hit is a
+    /// pixel with any opacity.
+    pub fn of(frame: &Frame, picture: &Picture, rays: u64) -> Self {
         let sum = |key: Key<u32>| {
             let counts = frame.plane(key).into_iter().flatten();
             counts.map(|&n| u64::from(n)).sum()
@@ -38,7 +39,7 @@ impl Counts {
                 .count(),
         };
         Self {
-            rays: frame.size.pixels() as u64,
+            rays,
             samples: sum(STEPS),
             nodes: sum(NODES),
             hits: hits as u64,

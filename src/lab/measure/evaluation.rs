@@ -59,7 +59,11 @@ pub fn evaluate(
     let rendering = renderer.render(scene, evaluated_planes(&scene.picture))?;
     Ok(Evaluation {
         figures: figures(reference, &rendering.frame, scale)?,
-        counts: Counts::of(&rendering.frame, &scene.picture),
+        counts: Counts::of(
+            &rendering.frame,
+            &scene.picture,
+            rendering.rays_per_round.iter().sum(),
+        ),
         rendering,
     })
 }

@@ -133,6 +133,8 @@ kernel_enum! {
         Pixels => RAYS_PIXELS = 1,
         /// Rays that are given one by one.
         Buffers => RAYS_BUFFERS = 2,
+        /// Several rays in each of some pixels of a camera's picture.
+        Samples => RAYS_SAMPLES = 3,
     }
 }
 
@@ -171,6 +173,9 @@ const MAX_KNOTS: u32 = (TransferFunction::MAX_KNOTS * SMOOTH_PARTS) as u32;
 /// How often the adaptive quadrature halves a monotone piece of a cell.
 const ADAPTIVE_HALVINGS: u32 = 10;
 
+/// Pixels along the edge of the squares in which pixels are counted and listed to be cast.
+pub const LISTED_SQUARE: u32 = 16;
+
 /// The numbers that belong to no enum, or to one whose own numbers pictures hold.
 const NUMBERS: &[(&str, u32)] = &[
     ("MAX_SAMPLES", MAX_SAMPLES),
@@ -180,6 +185,12 @@ const NUMBERS: &[(&str, u32)] = &[
     ("MAX_CLIP_PLANES", ClipPlane::MAX_COUNT as u32),
     ("MAX_KNOTS", MAX_KNOTS),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
+    ("LISTED_SQUARE", LISTED_SQUARE),
+    // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next. The first
+    // two are the numbers of the layer `cast`.
+    ("MARK_FILLED", 0),
+    ("MARK_CAST", 1),
+    ("MARK_NEXT", 2),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
     ("KIND_CAP", Kind::Cap as u32),

@@ -3,57 +3,90 @@
 use crate::error::{Error, Result};
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{EmissionCast, KernelEnum, shading};
+use crate::render::abi::{EmissionCast, KernelEnum, Shading, shading};
 use crate::render::occupancy::{Opacity, stand_ins};
 use crate::render::passes::{EmissionInputs, Run, adaptive_emission, cast_emission};
-use crate::render::resources::{DeviceGradient, DeviceLayers, DeviceTransfer, Tables};
-use crate::scene::{Emission, Phong, Rgb, TransferFunction, Traverse};
+use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
+use crate::scene::{Emission, Phong, Quadrature, Rgb, TransferFunction, Traverse};
 
 use super::planes::Planes;
+use super::schedule::Schedule;
 use super::view::View;
 
-/// Uploads the transfer function, casts.
-pub fn emission(
-    run: &mut Run,
-    view: &View,
-    emission: &Emission,
-    opacity: &Opacity,
-) -> Result<Planes> {
-    check_homogeneity(emission)?;
-    let mut layers = DeviceLayers::default();
-    layers.allocate(run.device, &run.rays, &layers_written(view))?;
+/// One cast, under a transfer function that is on the device.
+pub struct EmissionPasses<'a> {
+    view: &'a View<'a>,
+    quadrature: Quadrature,
+    transfer: DeviceTransfer,
+    /// The averages that stand for homogeneous leaves; `None` where no leaf counts as homogeneous, and rays
+    /// are followed as without.
+    node_average: Option<Buffer<f32>>,
+    cast: EmissionCast,
+    shading: Shading,
+    is_shaded: bool,
+}
 
-    let (quadrature, shaded) = (emission.quadrature, emission.phong.is_some());
-    let with_values = layers.has(Layer::Value);
-    let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
-    let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
-    let node_average = node_average(run, view, emission)?;
-    let inputs = EmissionInputs {
-        cast_inputs: view.inputs,
-        transfer: &transfer,
-        node_average: node_average.as_ref(),
-        gradient: if shaded || layers.has(Layer::Normal) {
-            view.gradient
-        } else {
-            DeviceGradient::NONE
-        },
-        cast: emission_cast(view, emission, &transfer, node_average.is_some()),
-        shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
-        shaded,
-    };
-    let mut color = run.plane("colour plane", [0.0; 4])?;
-    if quadrature.is_stepped() {
-        cast_emission(run, quadrature.method(), &inputs, &mut color, &mut layers)?;
-    } else {
-        adaptive_emission(run, &inputs, &mut color, &mut layers)?;
+impl<'a> EmissionPasses<'a> {
+    /// The passes of a medium, whose transfer function is uploaded.
+    ///
+    /// # Errors
+    /// The device has no room; homogeneous nodes beside what excludes them.
+    pub fn new(
+        run: &Run,
+        view: &'a View<'a>,
+        emission: &Emission,
+        opacity: &Opacity,
+    ) -> Result<Self> {
+        check_homogeneity(emission)?;
+        let quadrature = emission.quadrature;
+        let with_values = layers(view).contains(&Layer::Value);
+        let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
+        let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
+        let node_average = node_average(run, view, emission)?;
+        Ok(Self {
+            view,
+            quadrature,
+            cast: emission_cast(view, emission, &transfer, node_average.is_some()),
+            shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
+            is_shaded: emission.phong.is_some(),
+            transfer,
+            node_average,
+        })
     }
-    let averages_bytes = node_average.as_ref().map_or(0, |averages| averages.bytes());
-    Ok(Planes {
-        color,
-        display: None,
-        layers,
-        other_bytes: transfer.bytes() + averages_bytes,
-    })
+}
+
+impl Schedule for EmissionPasses<'_> {
+    fn planes(&self, run: &Run) -> Result<Planes> {
+        let mut planes = Planes::new(run, &layers(self.view))?;
+        let averages_bytes = self
+            .node_average
+            .as_ref()
+            .map_or(0, |averages| averages.bytes());
+        planes.other_bytes = self.transfer.bytes() + averages_bytes;
+        Ok(planes)
+    }
+
+    fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Planes { color, layers, .. } = planes;
+        let inputs = EmissionInputs {
+            cast_inputs: self.view.inputs,
+            transfer: &self.transfer,
+            node_average: self.node_average.as_ref(),
+            gradient: if self.is_shaded || layers.has(Layer::Normal) {
+                self.view.gradient
+            } else {
+                DeviceGradient::NONE
+            },
+            cast: self.cast,
+            shading: self.shading,
+            shaded: self.is_shaded,
+        };
+        if self.quadrature.is_stepped() {
+            cast_emission(run, self.quadrature.method(), &inputs, color, layers)
+        } else {
+            adaptive_emission(run, &inputs, color, layers)
+        }
+    }
 }
 
 fn check_homogeneity(emission: &Emission) -> Result<()> {
@@ -67,7 +100,7 @@ fn check_homogeneity(emission: &Emission) -> Result<()> {
 }
 
 /// The layers that the cast writes.
-fn layers_written(view: &View) -> Vec<Layer> {
+fn layers(view: &View) -> Vec<Layer> {
     let wanted = view.wanted;
     let mut layers = Vec::new();
     if wanted.has_any([Layer::Depth, Layer::Value]) {
@@ -82,8 +115,6 @@ fn layers_written(view: &View) -> Vec<Layer> {
     layers
 }
 
-/// The averages that stand for homogeneous leaves; `None` where no leaf counts as homogeneous, and rays
-/// are followed as without.
 fn node_average(run: &Run, view: &View, emission: &Emission) -> Result<Option<Buffer<f32>>> {
     if emission.homogeneity.is_none() || !view.inputs.occupancy.has_homogeneous() {
         return Ok(None);

@@ -1,12 +1,18 @@
 //! One frame, from scene to planes: what lies on the device, each picture's schedule of passes, the
 //! read-back.
 
+mod antialias;
+mod casting;
 mod emission;
+mod listing;
+mod picture;
 mod planes;
 mod projection;
 mod renderer;
 mod room;
 mod sampled;
+mod schedule;
+mod sparse;
 mod step;
 mod surface;
 mod view;

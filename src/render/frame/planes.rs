@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
+use crate::render::passes::{Run, Seen};
 use crate::render::resources::DeviceLayers;
 use crate::scene::Emission;
 use crate::volume::Rescale;
@@ -17,15 +18,53 @@ pub struct Planes {
     /// The layers that are wanted, or were needed to make those; values are in stored units. A medium has no
     /// kind: it is there where it is opaque enough to have layers.
     pub layers: DeviceLayers,
-    /// Bytes of tables and planes that only the passes needed.
+    /// t of each hit, mm from the base plane; a surface's.
+    pub hit_mm: Option<Buffer<f32>>,
+    /// The share of each pixel's rays that met something, where it is wanted.
+    pub coverage: Option<Buffer<f32>>,
+    /// 1 where a pixel was cast, else 0; `None`: all were.
+    pub cast: Option<Buffer<u32>>,
+    /// The rays of each round.
+    pub rays_per_round: Vec<u64>,
+    /// Bytes of tables that only the passes needed.
     pub other_bytes: u64,
 }
 
 impl Planes {
+    /// Room for the colour and these layers.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn new(run: &Run, layers: &[Layer]) -> Result<Self> {
+        let mut planes = DeviceLayers::default();
+        planes.allocate(run.device, &run.rays, layers)?;
+        Ok(Self {
+            color: run.plane("colour plane", [0.0; 4])?,
+            display: None,
+            layers: planes,
+            hit_mm: None,
+            coverage: None,
+            cast: None,
+            rays_per_round: Vec::new(),
+            other_bytes: 0,
+        })
+    }
+
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
         let display = self.display.as_ref().map_or(0, |display| display.bytes());
-        self.color.bytes() + display + self.layers.bytes() + self.other_bytes
+        let hit = self.hit_mm.as_ref().map_or(0, |hit| hit.bytes());
+        let cast = self.cast.as_ref().map_or(0, |cast| cast.bytes());
+        self.color.bytes() + display + hit + cast + self.layers.bytes() + self.other_bytes
+    }
+
+    /// What pixels are compared by.
+    pub fn seen(&self) -> Seen<'_> {
+        Seen {
+            color: &self.color,
+            hit_mm: self.hit_mm.as_ref(),
+            layers: Some(&self.layers),
+        }
     }
 
     /// Waits for the passes and copies the wanted planes; values become physical by `rescale`. A
@@ -47,7 +86,8 @@ impl Planes {
             display: display.map(|plane| plane.download(device)).transpose()?,
             layers: Default::default(),
         };
-        let with_kind = wanted.with_if(wanted.has(Layer::Value), Layer::Kind);
+        let with_kind =
+            wanted.with_if(wanted.has_any([Layer::Value, Layer::Coverage]), Layer::Kind);
         for layer in with_kind.layers() {
             if let Some(plane) = self.plane(device, layer, &frame)? {
                 frame.layers.insert_plane(layer, plane);
@@ -64,6 +104,15 @@ impl Planes {
     fn plane(&self, device: &Device, layer: Layer, frame: &Frame) -> Result<Option<Plane>> {
         if let Some(plane) = self.layers.download(device, layer)? {
             return Ok(Some(plane));
+        }
+        if layer == Layer::Coverage {
+            return Ok(Some(Plane::Scalars(match &self.coverage {
+                Some(coverage) => coverage.download(device)?,
+                None => coverage_of_one(frame.plane(KIND).unwrap_or_default()),
+            })));
+        }
+        if let (Layer::Cast, Some(cast)) = (layer, &self.cast) {
+            return Ok(Some(Plane::Counts(cast.download(device)?)));
         }
         if layer == Layer::Kind {
             return Ok(Some(Plane::Counts(kind_of_medium(&frame.color))));
@@ -86,6 +135,18 @@ fn rescale_values(frame: &mut Frame, rescale: Rescale) {
         }
     }
     frame.layers.insert(VALUE, values);
+}
+
+/// What of each pixel its one ray met.
+fn coverage_of_one(kinds: &[u32]) -> Vec<f32> {
+    let coverage = |&kind: &u32| {
+        if kind == Kind::Nothing as u32 {
+            0.0
+        } else {
+            1.0
+        }
+    };
+    kinds.iter().map(coverage).collect()
 }
 
 /// A medium is a surface where it is opaque enough to have layers.

@@ -2,69 +2,94 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
+use crate::gpu::Buffer;
 use crate::render::abi::{ProjectionCast, ProjectionLoop, stored, stored_window};
 use crate::render::occupancy::Floor;
-use crate::render::passes::{Run, cast_maximum, exact_projection, window_value};
-use crate::render::resources::DeviceLayers;
+use crate::render::passes::{
+    Filling, Run, cast_maximum, exact_projection, fill_uncast, window_value,
+};
 use crate::scene::{Projection, SamplingMethod, Window};
 
 use super::planes::Planes;
+use super::schedule::Schedule;
 use super::view::View;
 
 /// Casts, then shows the values through the window.
-pub fn projection(
-    run: &mut Run,
-    view: &View,
-    of: Projection,
-    window: Window,
-    floor: Floor,
-) -> Result<Planes> {
-    let mut layers = DeviceLayers::default();
-    layers.allocate(run.device, &run.rays, &layers_written(view))?;
-
-    let (which, threshold) = match of {
-        Projection::Maximum | Projection::Minimum => (ProjectionLoop::Extremum, 0.0),
-        Projection::Mean => (ProjectionLoop::Mean, 0.0),
-        Projection::LocalMaximum { threshold } => (
-            ProjectionLoop::Local,
-            stored(view.volume.rescale(), threshold),
-        ),
-    };
-    let cast = ProjectionCast {
-        step_mm: view.step_mm(),
-        sign: floor.sign,
-        threshold,
-        traverse: view.traverse(),
-        probe: u32::from(view.scene.sampling.probe),
-        floor: floor.floor,
-        pad_0: 0,
-        pad_1: 0,
-    };
-    let project = match view.scene.sampling.method {
-        SamplingMethod::Fixed => cast_maximum,
-        SamplingMethod::Exact => exact_projection,
-    };
-    project(run, which, view.inputs, &cast, &mut layers)?;
-
-    let mut color = run.plane("colour plane", [0.0; 4])?;
-    let ends = stored_window(view.volume.rescale(), window);
-    window_value(run, ends, &layers, &mut color)?;
-    Ok(Planes {
-        color,
-        display: None,
-        layers,
-        other_bytes: 0,
-    })
+pub struct ProjectionPasses<'a> {
+    view: &'a View<'a>,
+    which: ProjectionLoop,
+    cast: ProjectionCast,
+    /// Its black and white ends, stored units.
+    window: [f32; 2],
 }
 
-/// The layers that the cast writes: what is wanted, and what the window reads.
-fn layers_written(view: &View) -> Vec<Layer> {
-    let mut layers = vec![Layer::Kind, Layer::Value];
-    if view.wanted.has(Layer::Depth) {
-        layers.push(Layer::Depth);
+impl<'a> ProjectionPasses<'a> {
+    /// The passes of a projection.
+    pub fn new(view: &'a View<'a>, of: Projection, window: Window, floor: Floor) -> Self {
+        let rescale = view.volume.rescale();
+        let (which, threshold) = match of {
+            Projection::Maximum | Projection::Minimum => (ProjectionLoop::Extremum, 0.0),
+            Projection::Mean => (ProjectionLoop::Mean, 0.0),
+            Projection::LocalMaximum { threshold } => {
+                (ProjectionLoop::Local, stored(rescale, threshold))
+            }
+        };
+        let cast = ProjectionCast {
+            step_mm: view.step_mm(),
+            sign: floor.sign,
+            threshold,
+            traverse: view.traverse(),
+            probe: u32::from(view.scene.sampling.probe),
+            floor: floor.floor,
+            pad_0: 0,
+            pad_1: 0,
+        };
+        Self {
+            view,
+            which,
+            cast,
+            window: stored_window(rescale, window),
+        }
     }
-    if view.wanted.has_any(Layer::COUNTERS) {
-        layers.extend(Layer::COUNTERS);
+
+    /// The layers that the cast writes: what is wanted, and what the window reads.
+    fn layers(&self) -> Vec<Layer> {
+        let wanted = self.view.wanted;
+        let mut layers = vec![Layer::Kind, Layer::Value];
+        if wanted.has(Layer::Depth) {
+            layers.push(Layer::Depth);
+        }
+        if wanted.has_any(Layer::COUNTERS) {
+            layers.extend(Layer::COUNTERS);
+        }
+        layers
     }
-    layers
+}
+
+impl Schedule for ProjectionPasses<'_> {
+    fn planes(&self, run: &Run) -> Result<Planes> {
+        Planes::new(run, &self.layers())
+    }
+
+    fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let project = match self.view.scene.sampling.method {
+            SamplingMethod::Fixed => cast_maximum,
+            SamplingMethod::Exact => exact_projection,
+        };
+        let inputs = self.view.inputs;
+        project(run, self.which, inputs, &self.cast, &mut planes.layers)?;
+        window_value(run, self.window, &planes.layers, &mut planes.color)
+    }
+
+    /// Values are what is interpolated: their greys follow.
+    fn fill(
+        &self,
+        run: &mut Run,
+        filling: Filling,
+        marks: &Buffer<u32>,
+        planes: &mut Planes,
+    ) -> Result<()> {
+        fill_uncast(run, filling, marks, None, &mut planes.layers)?;
+        window_value(run, self.window, &planes.layers, &mut planes.color)
+    }
 }

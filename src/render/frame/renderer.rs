@@ -5,24 +5,22 @@ use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
-use crate::gpu::{Device, PassTime, Timings};
+use crate::gpu::{Device, FrameTimes, PassTime, Timings};
 use crate::octree::Octree;
 use crate::render::abi::{Lanes, Variant, tone};
-use crate::render::occupancy::{Criterion, OccupancyCache};
+use crate::render::occupancy::{Criterion, OccupancyCache, OccupancyTables};
 use crate::render::passes::{CastInputs, Passes, Run, tone_curve};
 use crate::render::resources::{
     DeviceClip, DeviceDirections, DeviceGradient, DeviceVoxels, GradientFigures, HeldVolume,
     RaySource, needed_gradients,
 };
-use crate::scene::{Picture, SamplingMethod, Scene, Storage};
+use crate::scene::{Refill, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
-use super::emission::emission;
+use super::casting::cast_picture;
 use super::planes::Planes;
-use super::projection::projection;
-use super::room::{check_picture, check_volume};
+use super::room::{check_picture, check_volume, listing_bytes};
 use super::step::check_step;
-use super::surface::{Surface, surface};
 use super::view::View;
 
 /// How the device is used; never changes a picture.
@@ -68,6 +66,9 @@ pub struct Rendering {
     pub render_ms: f64,
     /// Time to copy the wanted planes to the host, after the last pass has ended.
     pub read_back_ms: f64,
+    /// The rays of each round: one round for a whole picture; those of a sparse one; for an anti-aliased one the
+    /// rays through pixels' centres, where they are needed, and then all others.
+    pub rays_per_round: Vec<u64>,
     /// The precomputed gradients, where the picture made use of them.
     pub gradients: Option<GradientFigures>,
     /// Bytes held on the device while rendering.
@@ -177,21 +178,26 @@ impl<'a> Renderer<'a> {
         pixels: Option<&[u32]>,
     ) -> Result<Rendering> {
         self.check_sampling(scene)?;
-        let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree);
+        let listing_bytes = listing_bytes(scene);
+        let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree) + listing_bytes;
         check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
         let volume_upload = self.upload_volume(scene.sampling.voxels)?;
         let uploaded_before = self.device.uploaded_bytes();
         self.precompute(scene, wanted)?;
         let held_bytes = self.held_bytes();
-        check_picture(self.device.info(), scene.size, wanted, held_bytes)?;
+        let with_lists = held_bytes + listing_bytes;
+        check_picture(self.device.info(), scene.size, wanted, with_lists)?;
 
         let mut timings = Timings::default();
         let Launched {
             planes,
             classify_ms,
         } = self.launch(scene, wanted, pixels, &mut timings)?;
-        let build_ms = timings.build(self.device)?;
-        let (passes, render_ms) = timings.finish(self.device)?;
+        let FrameTimes {
+            passes,
+            build_ms,
+            device_ms,
+        } = timings.finish(self.device)?;
 
         let finished = Instant::now();
         let frame = planes.read_back(self.device, scene.size, wanted, self.volume.rescale())?;
@@ -204,7 +210,8 @@ impl<'a> Renderer<'a> {
             upload_ms: volume_upload.ms,
             classify_ms,
             uploaded_bytes: volume_upload.bytes + uploaded_bytes,
-            render_ms,
+            render_ms: device_ms,
+            rays_per_round: planes.rays_per_round.clone(),
             gradients: (self.directions_for(scene, wanted)).map(|directions| directions.figures),
             device_bytes: held_bytes + self.occupancies.bytes() + planes.bytes(),
         })
@@ -256,9 +263,13 @@ impl<'a> Renderer<'a> {
         let (device, volume, octree) = (self.device, self.volume, self.octree);
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, volume, octree);
-        let (occupancy, is_new) =
-            self.occupancies
-                .get(device, volume, octree, &scene.sampling, criterion)?;
+        let certified = scene
+            .sparse
+            .is_some_and(|sparse| sparse.refill == Refill::Certified);
+        let tables = OccupancyTables::of(&scene.sampling, certified);
+        let (occupancy, is_new) = self
+            .occupancies
+            .get(device, volume, octree, tables, criterion)?;
         let classify_ms = if is_new {
             start.elapsed().as_secs_f64() * 1e3
         } else {
@@ -279,6 +290,7 @@ impl<'a> Renderer<'a> {
             device,
             passes: &mut self.passes,
             timings,
+            announcing: false,
             rays,
             work_group: self.work_group,
             variant: Variant::of(volume, octree, &scene.sampling, self.lanes),
@@ -296,7 +308,7 @@ impl<'a> Renderer<'a> {
             },
             gradient: DeviceGradient::of(scene.gradient, directions),
         };
-        let mut planes = picture(&mut run, &view)?;
+        let mut planes = cast_picture(&mut run, &view, pixels.is_none())?;
         if wanted.display {
             let mut display = run.plane("display plane", [0.0; 4])?;
             tone_curve(&mut run, &tone(&scene.tone), &planes.color, &mut display)?;
@@ -307,39 +319,6 @@ impl<'a> Renderer<'a> {
             planes,
             classify_ms,
         })
-    }
-}
-
-/// The passes of the scene's kind of picture, which casts by the numbers that its nodes were classified by.
-fn picture(run: &mut Run, view: &View) -> Result<Planes> {
-    match (&view.scene.picture, view.inputs.occupancy.criterion()) {
-        (
-            Picture::Surface {
-                caps,
-                refine,
-                color,
-                phong,
-                ..
-            },
-            Criterion::Iso(iso),
-        ) => {
-            let seen = Surface {
-                caps: *caps,
-                refine: *refine,
-                color: *color,
-                phong: *phong,
-            };
-            surface(run, view, *iso, &seen)
-        }
-        (Picture::Projection { of, window }, Criterion::Floor(floor)) => {
-            projection(run, view, *of, *window, *floor)
-        }
-        (Picture::Emission(medium), Criterion::Opacity(opacity)) => {
-            emission(run, view, medium, opacity)
-        }
-        _ => Err(Error::failed(
-            "the octree's nodes were classified for another kind of picture",
-        )),
     }
 }
 

@@ -5,7 +5,11 @@ use crate::extent::{Dims, ImageSize};
 use crate::frame::{Layer, Wanted};
 use crate::gpu::{DeviceInfo, DeviceKind};
 use crate::render::resources::DeviceLayers;
+use crate::scene::Scene;
 use crate::volume::VoxelType;
+
+/// Rays that are cast at a time where a pixel has many: their planes take some tens of megabytes.
+pub const RAYS_AT_A_TIME: usize = 1 << 20;
 
 /// Checks that a device can hold the voxels of a volume of this size and type, in one piece.
 ///
@@ -23,6 +27,23 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
         device.name
     ))
     .hint("choose another --device; '--device reference' needs none"))
+}
+
+/// The bytes that a scene's picture takes on the device for marks and lists of pixels, and for the planes of
+/// the rays that are cast at a time where a pixel has many.
+pub fn listing_bytes(scene: &Scene) -> u64 {
+    /// A mark and a number in the list.
+    const LISTED: u64 = 4 + 4;
+    /// Colour, normal, t and kind.
+    const RAY: u64 = 16 + 16 + 4 + 4;
+    let (pixels, rays) = (
+        scene.size.pixels() as u64,
+        u64::from(scene.anti_aliasing.rays()),
+    );
+    if rays > 1 {
+        return pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
+    }
+    scene.sparse.map_or(0, |_| pixels * LISTED)
 }
 
 /// Checks that a frame of this size fits beside `held_bytes` of volume and octree. Counts the most that a picture
@@ -107,7 +128,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (2 * 16 + 7 * 4);
+        let needs = 100 * (2 * 16 + 8 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

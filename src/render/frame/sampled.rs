@@ -46,6 +46,7 @@ impl Renderer<'_> {
             device,
             passes: &mut self.passes,
             timings: &mut timings,
+            announcing: false,
             rays: RaySource::of_camera(&scene.camera, scene.size, volume),
             work_group: self.work_group,
             variant: Variant::of(volume, octree, &scene.sampling, self.lanes),
@@ -54,7 +55,7 @@ impl Renderer<'_> {
         let step_mm = step_mm(&scene.sampling, volume) as f32;
         let (mut means, mut counts) = (run.plane("means", 0.0)?, run.plane("counts", 0)?);
         sample_field(&mut run, on_device, step_mm, &mut means, &mut counts)?;
-        let (_, ms) = timings.finish(device)?;
+        let ms = timings.finish(device)?.device_ms;
         let physical = |stored: f32| volume.rescale().physical(f64::from(stored));
         let means = means.download(device)?.into_iter();
         Ok(Sampled {

@@ -2,12 +2,12 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::render::abi::{KernelEnum, StoredIso, SurfaceCast, shading};
+use crate::render::abi::{KernelEnum, Shading, StoredIso, SurfaceCast, shading};
 use crate::render::passes::{Run, cast_surface, exact_surface, shade_surface, surface_normal};
-use crate::render::resources::DeviceLayers;
-use crate::scene::{Phong, Refine, Rgb, SamplingMethod};
+use crate::scene::{Phong, Refill, Refine, Rgb, SamplingMethod};
 
 use super::planes::Planes;
+use super::schedule::Schedule;
 use super::view::View;
 
 /// How a scene's surface is found and seen, but for its iso value.
@@ -23,50 +23,79 @@ pub struct Surface {
 }
 
 /// Casts, finds normals where they are needed, shades.
-pub fn surface(run: &mut Run, view: &View, iso: StoredIso, surface: &Surface) -> Result<Planes> {
-    let shaded = surface.phong.is_some();
-    let method = view.scene.sampling.method;
-    let mut layers = DeviceLayers::default();
-    layers.allocate(run.device, &run.rays, &layers_written(view, method))?;
-
-    let cast = surface_cast(view, iso, surface);
-    let mut hit_mm = run.plane("hit plane", f32::INFINITY)?;
-    let find = match method {
-        SamplingMethod::Fixed => cast_surface,
-        SamplingMethod::Exact => exact_surface,
-    };
-    find(run, view.inputs, &cast, &mut hit_mm, &mut layers)?;
-
-    if view.wanted.has(Layer::Normal) || shaded {
-        layers.allocate(run.device, &run.rays, &[Layer::Normal])?;
-        surface_normal(run, view.inputs, view.gradient, &hit_mm, &mut layers)?;
-    }
-
-    let light = shading(surface.color, surface.phong, view.scene.light);
-    let mut color = run.plane("colour plane", [0.0; 4])?;
-    shade_surface(run, &light, shaded, &layers, &mut color)?;
-    Ok(Planes {
-        color,
-        display: None,
-        layers,
-        other_bytes: hit_mm.bytes(),
-    })
+pub struct SurfacePasses<'a> {
+    view: &'a View<'a>,
+    cast: SurfaceCast,
+    light: Shading,
+    is_shaded: bool,
 }
 
-/// The layers that the cast writes: what is wanted, and what later passes read.
-fn layers_written(view: &View, method: SamplingMethod) -> Vec<Layer> {
-    let wanted = view.wanted;
-    let mut layers = vec![Layer::Kind];
-    if wanted.has_any([Layer::Depth, Layer::Value]) {
-        layers.extend([Layer::Depth, Layer::Value]);
+impl<'a> SurfacePasses<'a> {
+    /// The passes of a surface.
+    pub fn new(view: &'a View<'a>, iso: StoredIso, surface: &Surface) -> Self {
+        Self {
+            view,
+            cast: surface_cast(view, iso, surface),
+            light: shading(surface.color, surface.phong, view.scene.light),
+            is_shaded: surface.phong.is_some(),
+        }
     }
-    if wanted.has_any(Layer::COUNTERS) {
-        layers.extend(Layer::COUNTERS);
+
+    /// The layers that the passes write: what is wanted, and what later passes read.
+    fn layers(&self) -> Vec<Layer> {
+        let wanted = self.view.wanted;
+        let mut layers = vec![Layer::Kind];
+        if wanted.has_any([Layer::Depth, Layer::Value]) {
+            layers.extend([Layer::Depth, Layer::Value]);
+        }
+        if wanted.has_any(Layer::COUNTERS) {
+            layers.extend(Layer::COUNTERS);
+        }
+        let method = self.view.scene.sampling.method;
+        if wanted.has(Layer::Certificate) && method == SamplingMethod::Exact {
+            layers.push(Layer::Certificate);
+        }
+        // Pixels are compared by their normals, whether or not those are wanted.
+        let scene = self.view.scene;
+        let floods = scene
+            .sparse
+            .is_some_and(|sparse| sparse.refill == Refill::Flood);
+        let is_compared = floods || scene.anti_aliasing.is_adaptive();
+        if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
+            layers.push(Layer::Normal);
+        }
+        layers
     }
-    if wanted.has(Layer::Certificate) && method == SamplingMethod::Exact {
-        layers.push(Layer::Certificate);
+}
+
+impl Schedule for SurfacePasses<'_> {
+    fn planes(&self, run: &Run) -> Result<Planes> {
+        let mut planes = Planes::new(run, &self.layers())?;
+        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
+        Ok(planes)
     }
-    layers
+
+    fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Self { view, .. } = *self;
+        let find = match view.scene.sampling.method {
+            SamplingMethod::Fixed => cast_surface,
+            SamplingMethod::Exact => exact_surface,
+        };
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            color,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
+        find(run, view.inputs, &self.cast, hit_mm, layers)?;
+        if layers.has(Layer::Normal) {
+            surface_normal(run, view.inputs, view.gradient, hit_mm, layers)?;
+        }
+        shade_surface(run, &self.light, self.is_shaded, layers, color)
+    }
 }
 
 fn surface_cast(view: &View, iso: StoredIso, surface: &Surface) -> SurfaceCast {

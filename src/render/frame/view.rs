@@ -1,11 +1,12 @@
 //! The scene and its data, as a picture's schedule of passes gets them.
 
+use crate::error::Result;
 use crate::frame::Wanted;
 use crate::octree::Octree;
 use crate::render::abi::{KernelEnum, step_mm};
-use crate::render::passes::CastInputs;
+use crate::render::passes::{CastInputs, Run};
 use crate::render::resources::DeviceGradient;
-use crate::scene::Scene;
+use crate::scene::{Lens, Scene};
 use crate::volume::Volume;
 
 /// A scene with its data on host and device, and the planes that are wanted of it.
@@ -28,6 +29,19 @@ impl View<'_> {
     /// The sampling step, single precision.
     pub fn step_mm(&self) -> f32 {
         step_mm(&self.scene.sampling, self.volume) as f32
+    }
+
+    /// The distance of neighbouring rays, mm, at t = 0 and its growth per mm.
+    pub fn footprint(&self, run: &Run) -> Result<[f32; 2]> {
+        let height = f64::from(self.scene.size.height());
+        let (grid, _) = run.picture()?;
+        Ok(match self.scene.camera.lens() {
+            Lens::Perspective { fov_deg } => {
+                let growth = 2.0 * (fov_deg.to_radians() / 2.0).tan() / height;
+                [growth * f64::from(grid.base_mm), growth].map(|mm| mm as f32)
+            }
+            Lens::Orthographic { height_mm } => [(height_mm / height) as f32, 0.0],
+        })
     }
 
     /// How kernels are to traverse: without skipping they sample everything.

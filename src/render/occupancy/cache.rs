@@ -4,11 +4,10 @@
 use crate::error::Result;
 use crate::gpu::Device;
 use crate::octree::Octree;
-use crate::scene::Sampling;
 use crate::volume::Volume;
 
 use super::criterion::Criterion;
-use super::occupancy_map::Occupancy;
+use super::occupancy_map::{Occupancy, OccupancyTables};
 
 /// The occupancies by the last few criteria, the latest last: for scenes that take turns, such as those of
 /// a benchmark. The latest alone, or as many as together take half of the voxels' memory at most.
@@ -16,7 +15,7 @@ use super::occupancy_map::Occupancy;
 pub struct OccupancyCache(Vec<Occupancy>);
 
 impl OccupancyCache {
-    /// The occupancy by a criterion for rays with this sampling, and whether it had to be computed.
+    /// The occupancy by a criterion with these tables, and whether it had to be computed.
     ///
     /// # Errors
     /// The host or the device has no room.
@@ -25,16 +24,13 @@ impl OccupancyCache {
         device: &Device,
         volume: &Volume,
         octree: &Octree,
-        sampling: &Sampling,
+        tables: OccupancyTables,
         criterion: Criterion,
     ) -> Result<(&Occupancy, bool)> {
-        let known = self
-            .0
-            .iter()
-            .position(|one| one.serves(sampling, &criterion));
+        let known = self.0.iter().position(|one| one.serves(tables, &criterion));
         let latest = match known {
             Some(place) => self.0.remove(place),
-            None => Occupancy::upload(device, volume, octree, sampling, criterion)?,
+            None => Occupancy::upload(device, volume, octree, tables, criterion)?,
         };
         self.0.push(latest);
         while self.0.len() > 1 && self.bytes() > volume.voxels().bytes().len() as u64 / 2 {

@@ -14,4 +14,4 @@ pub use cache::OccupancyCache;
 pub use criterion::{Criterion, Opacity};
 pub use floor::Floor;
 pub use homogeneity::stand_ins;
-pub use occupancy_map::Occupancy;
+pub use occupancy_map::{Occupancy, OccupancyTables};

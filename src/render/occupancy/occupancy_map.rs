@@ -10,21 +10,42 @@ use crate::volume::Volume;
 use super::criterion::Criterion;
 use super::distance::add_distances;
 
+/// What passes ask an occupancy for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OccupancyTables {
+    filter: Filter,
+    /// The distances of leaves.
+    with_distances: bool,
+    /// The bits of cells.
+    with_cells: bool,
+}
+
+impl OccupancyTables {
+    /// What casts with this sampling ask for, and where blocks of pixels are `certified` to show nothing their
+    /// test, which does by cells whatever rays do.
+    pub fn of(sampling: &Sampling, certified: bool) -> Self {
+        let with_distances = sampling.traverse == Traverse::Distance;
+        Self {
+            filter: sampling.filter,
+            with_distances,
+            with_cells: certified || with_distances && sampling.filter == Filter::Linear,
+        }
+    }
+}
+
 /// The occupancy of a volume by one criterion, on the device: which nodes and cells matter.
 pub struct Occupancy {
     criterion: Criterion,
-    traverse: Traverse,
-    filter: Filter,
+    tables: OccupancyTables,
     has_homogeneous: bool,
     /// The class of each octree node and, where space is skipped by distance, its distance.
     pub node_class: Buffer<u8>,
-    /// A bit per cell that matters, where ray packets skip the others: with the linear filter
-    /// and where space is skipped by distance. Else a single word.
+    /// A bit per cell that matters, where frustums skip the others. Else a single word.
     pub cells: Buffer<u64>,
 }
 
 impl Occupancy {
-    /// Classifies nodes and cells for rays with this sampling, and uploads the classes.
+    /// Classifies nodes and cells, and uploads the tables.
     ///
     /// # Errors
     /// The host or the device has no room.
@@ -32,24 +53,22 @@ impl Occupancy {
         device: &Device,
         volume: &Volume,
         octree: &Octree,
-        sampling: &Sampling,
+        tables: OccupancyTables,
         criterion: Criterion,
     ) -> Result<Self> {
-        let (traverse, filter) = (sampling.traverse, sampling.filter);
         let mut classes = criterion.classes(octree)?;
         let has_homogeneous = classes.contains(&(Class::Homogeneous as u8));
-        let cells = if traverse == Traverse::Distance && filter == Filter::Linear {
+        let cells = if tables.with_cells {
             criterion.cells(volume, octree, &classes)?
         } else {
             vec![0]
         };
-        if traverse == Traverse::Distance {
+        if tables.with_distances {
             add_distances(octree, &mut classes)?;
         }
         Ok(Self {
             criterion,
-            traverse,
-            filter,
+            tables,
             has_homogeneous,
             node_class: Buffer::upload(device, "octree's classes", &classes)?,
             cells: Buffer::upload(device, "cells that matter", &cells)?,
@@ -66,11 +85,9 @@ impl Occupancy {
         self.has_homogeneous
     }
 
-    /// Whether the occupancy also holds for this criterion and sampling.
-    pub fn serves(&self, sampling: &Sampling, criterion: &Criterion) -> bool {
-        self.criterion == *criterion
-            && self.traverse == sampling.traverse
-            && self.filter == sampling.filter
+    /// Whether the occupancy has these tables by this criterion.
+    pub fn serves(&self, tables: OccupancyTables, criterion: &Criterion) -> bool {
+        self.criterion == *criterion && self.tables == tables
     }
 
     /// Device memory held, in bytes.

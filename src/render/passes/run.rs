@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::gpu::{Args, Buffer, Defines, Device, Element, Pass, Timings};
-use crate::render::abi::{KernelEnum, RayGrid, Variant};
+use crate::render::abi::{KernelEnum, Lanes, RayGrid, Variant};
 use crate::render::resources::{DeviceVoxels, RaySource};
 
 /// The passes of a renderer: each variant is built once, before its first launch.
@@ -29,6 +29,9 @@ pub struct Run<'a> {
     pub passes: &'a mut Passes,
     /// The launches of this frame.
     pub timings: &'a mut Timings,
+    /// Whether launches are only announced: their passes are built before the frame's first launch, but not
+    /// launched.
+    pub announcing: bool,
     /// The rays of every launch.
     pub rays: RaySource,
     /// Work-items along x and y of a group; `None`: small square tiles of pixels.
@@ -75,7 +78,47 @@ impl Run<'_> {
         self.launch(name, defines, args, size, self.variant.lanes.tile())
     }
 
-    fn picture(&self) -> Result<(&RayGrid, ImageSize)> {
+    /// The constants of the variant, for work-items that are no tiles of rays.
+    pub fn scalar_defines(&self) -> Defines {
+        self.variant.defines().with("LANES", Lanes::ONE)
+    }
+
+    /// Puts a launch at the end of the frame's whose work-items each take a square of `side` pixels of the picture.
+    ///
+    /// # Errors
+    /// As [`Run::screen`].
+    pub fn squares(
+        &mut self,
+        name: &'static str,
+        defines: Defines,
+        args: Args,
+        side: u32,
+    ) -> Result<()> {
+        let (_, size) = self.picture()?;
+        let count = |pixels: u32| pixels.div_ceil(side);
+        let squares = ImageSize::new(count(size.width()), count(size.height()))?;
+        self.items(name, defines, args, squares)
+    }
+
+    /// Puts a launch at the end of the frame's of so many work-items.
+    ///
+    /// # Errors
+    /// The arguments are not those of the pass's first launch.
+    pub fn items(
+        &mut self,
+        name: &'static str,
+        defines: Defines,
+        args: Args,
+        items: ImageSize,
+    ) -> Result<()> {
+        self.launch(name, defines, args, items, [1, 1])
+    }
+
+    /// The rays of all pixels of the picture, and its size.
+    ///
+    /// # Errors
+    /// The rays belong to no picture.
+    pub fn picture(&self) -> Result<(&RayGrid, ImageSize)> {
         let none = || Error::failed("rays that are given one by one make no picture");
         self.rays.picture().ok_or_else(none)
     }
@@ -90,7 +133,11 @@ impl Run<'_> {
     ) -> Result<()> {
         let pass = self.passes.get(name, defines, tile);
         let launch = pass.launch(self.device, args, size, self.work_group)?;
-        self.timings.add(launch);
+        if self.announcing {
+            self.timings.announce(&launch);
+        } else {
+            self.timings.add(launch);
+        }
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::gpu::Buffer;
+use crate::gpu::{Args, Buffer};
 use crate::render::abi::Shading;
 use crate::render::resources::DeviceLayers;
 
@@ -18,11 +18,11 @@ pub fn shade_surface(
 ) -> Result<()> {
     let defines = run.defines().with("SHADED", u32::from(shaded));
     let normal: &[Layer] = if shaded { &[Layer::Normal] } else { &[] };
-    let args = run
-        .screen_args()?
+    let args = Args::new()
+        .with(&run.rays)
         .value("shading", shading)
         .with(layers.reading(&[Layer::Kind]))
         .with(layers.reading(normal))
         .write("color", color);
-    run.screen("shade_surface", defines, args)
+    run.cast("shade_surface", defines, args)
 }

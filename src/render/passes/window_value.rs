@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::gpu::Buffer;
+use crate::gpu::{Args, Buffer};
 use crate::render::resources::DeviceLayers;
 
 use super::run::Run;
@@ -15,10 +15,10 @@ pub fn window_value(
     layers: &DeviceLayers,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let args = run
-        .screen_args()?
+    let args = Args::new()
+        .with(&run.rays)
         .value("window", &window)
         .with(layers.reading(&[Layer::Kind, Layer::Value]))
         .write("color", color);
-    run.screen("window_value", run.defines(), args)
+    run.cast("window_value", run.defines(), args)
 }

@@ -81,6 +81,14 @@ impl DeviceLayers {
         self.0[layer as usize].is_some()
     }
 
+    /// The plane of a layer of whole numbers.
+    pub fn layer_counts(&self, layer: Layer) -> Option<&Buffer<u32>> {
+        match &self.0[layer as usize] {
+            Some(DevicePlane::Counts(buffer)) => Some(buffer),
+            _ => None,
+        }
+    }
+
     /// The planes of those of the layers that are there, in this order, as arguments of a pass that reads
     /// them.
     pub fn reading<'a>(&'a self, layers: &'a [Layer]) -> impl Group + 'a {

@@ -1,6 +1,9 @@
 //! The rays of a launch: where they come from, and the one place where their set-up narrows from double to
 //! single precision.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::error::{Error, Result};
@@ -47,6 +50,19 @@ pub enum RaySource {
         size: ImageSize,
         /// The pixels, row by row.
         listed: Buffer<u32>,
+    },
+    /// Several rays in each of some pixels; planes have an entry for each ray.
+    Samples {
+        /// The rays of all pixels, linear over the picture.
+        grid: RayGrid,
+        /// The picture's size.
+        size: ImageSize,
+        /// Pixels, counted row by row.
+        listed: Arc<Buffer<u32>>,
+        /// The part of the list that has rays.
+        part: Range<usize>,
+        /// Rays along each side of a pixel.
+        per_side: u32,
     },
     /// Rays that are given one by one, [`IndexRay`]s; they need not run together.
     Buffers {
@@ -124,6 +140,7 @@ impl RaySource {
         match self {
             Self::Camera { .. } => Rays::Camera,
             Self::Pixels { .. } => Rays::Pixels,
+            Self::Samples { .. } => Rays::Samples,
             Self::Buffers { .. } => Rays::Buffers,
         }
     }
@@ -132,7 +149,16 @@ impl RaySource {
     pub fn places(&self) -> usize {
         match self {
             Self::Camera { size, .. } | Self::Pixels { size, .. } => size.pixels(),
+            Self::Samples { part, per_side, .. } => part.len() * (per_side * per_side) as usize,
             Self::Buffers { origins, .. } => origins.count(),
+        }
+    }
+
+    /// How many rays there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Pixels { listed, .. } => listed.count(),
+            _ => self.places(),
         }
     }
 
@@ -153,11 +179,10 @@ impl RaySource {
     /// # Errors
     /// No rays, or more than a launch can have.
     pub fn launch_size(&self, lanes: Lanes) -> Result<(ImageSize, [usize; 2])> {
-        let count = match self {
-            Self::Camera { size, .. } => return Ok((*size, lanes.tile())),
-            Self::Pixels { listed, .. } => listed.count(),
-            Self::Buffers { origins, .. } => origins.count(),
-        };
+        if let Self::Camera { size, .. } = self {
+            return Ok((*size, lanes.tile()));
+        }
+        let count = self.count();
         let rows = ImageSize::new(ROW.min(count) as u32, count.div_ceil(ROW) as u32)?;
         Ok((rows, [lanes.get() as usize, 1]))
     }
@@ -166,7 +191,7 @@ impl RaySource {
     pub fn picture(&self) -> Option<(&RayGrid, ImageSize)> {
         match self {
             Self::Camera { grid, size } | Self::Pixels { grid, size, .. } => Some((grid, *size)),
-            Self::Buffers { .. } => None,
+            Self::Samples { .. } | Self::Buffers { .. } => None,
         }
     }
 }
@@ -179,6 +204,18 @@ impl Group for &RaySource {
                 .value("rays", grid)
                 .read("listed", listed)
                 .value("listed_count", &(listed.count() as u32)),
+            RaySource::Samples {
+                grid,
+                listed,
+                part,
+                per_side,
+                ..
+            } => args
+                .value("rays", grid)
+                .read("listed", listed)
+                .value("first_listed", &(part.start as u32))
+                .value("sample_count", &(self.places() as u32))
+                .value("per_side", per_side),
             RaySource::Buffers { origins, dirs } => args
                 .read("origins", origins)
                 .read("dirs", dirs)

@@ -58,7 +58,7 @@ fn every_flag_is_a_key_of_the_command_s_scene_file() {
         assert!(!refusals.iter().any(unknown), "{key}: {refusals:?}");
     }
     // The controls: keys that no command has.
-    for key in ["scene", "help", "phantom", "sparse"] {
+    for key in ["scene", "help", "phantom", "sparsely"] {
         place.write("keys.toml", &format!("\n{key} = 1\n"));
         for command in [
             "render",

@@ -170,15 +170,25 @@ fn all_is_built_before_the_first_launch() {
     // A pass that is launched twice is built once.
     let timings = launched(&[passes[0].clone(), passes[1].clone(), passes[0].clone()]);
     assert_eq!(device.built_kernels(), 0);
-    assert!(timings.build(&device).unwrap() > 0.0);
+    let times = timings.finish(&device).unwrap();
+    assert_eq!(times.passes.len(), 3);
+    assert!(times.build_ms > 0.0);
     assert_eq!(device.built_kernels(), 2);
-    assert_eq!(timings.build(&device), Ok(0.0));
-    let (times, _) = timings.finish(&device).unwrap();
-    assert_eq!(times.len(), 3);
+    assert_eq!(launched(&passes).finish(&device).unwrap().build_ms, 0.0);
     assert_eq!(device.built_kernels(), 2);
-    launched(&passes).finish(&device).unwrap();
+    // What is announced is built with the first launch, before which nothing is.
+    let mut timings = launched(&passes);
+    let args = Args::new().write(
+        "layout",
+        &mut Buffer::<u32>::new(&device, "layout", 4096).unwrap(),
+    );
+    let announced = unique(3).launch(&device, args, ImageSize::new(1, 1).unwrap(), Some([1, 1]));
+    timings.announce(&announced.unwrap());
     assert_eq!(device.built_kernels(), 2);
+    timings.start(&device).unwrap();
+    assert_eq!(device.built_kernels(), 3);
+    assert_eq!(timings.finish(&device).unwrap().passes.len(), 2);
     // The control: what was not requested is built at the end.
     launched(&[unique(2)]).finish(&device).unwrap();
-    assert_eq!(device.built_kernels(), 3);
+    assert_eq!(device.built_kernels(), 4);
 }

@@ -285,6 +285,8 @@ fn scene_of(target: &Target) -> Result<Scene> {
         sampling: Sampling::default(),
         light: Light::default(),
         gradient: Gradient::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         tone: Tone::default(),
     })
 }

@@ -150,7 +150,7 @@ fn measure(bench: &Bench, renderer: &mut Renderer, scene: &Scene) -> Result<Vec<
         .collect::<Result<_>>()?;
     let times = bench.times(renderer, &scenes)?;
     let measured = frames.iter().zip(times).map(|(frame, times)| {
-        let counts = Counts::of(frame, &scene.picture);
+        let counts = Counts::of(frame, &scene.picture, frame.size.pixels() as u64);
         Measurement {
             times,
             nodes_per_ray: counts.nodes_per_ray(),

@@ -92,7 +92,7 @@ pub fn measure(
     let mut errors = Vec::new();
     for (case, frame) in cases.iter().zip(&frames) {
         let (surface, light) = references.error(case, frame)?;
-        let counts = Counts::of(frame, &case.scene.picture);
+        let counts = Counts::of(frame, &case.scene.picture, frame.size.pixels() as u64);
         errors.push((case, surface, light, counts));
     }
     let same: Vec<Option<bool>> = cases

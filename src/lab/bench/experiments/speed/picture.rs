@@ -148,6 +148,8 @@ pub fn scene(
         sampling,
         light: Light::default(),
         gradient: Default::default(),
+        anti_aliasing: Default::default(),
+        sparse: None,
         tone: Tone::default(),
     })
 }

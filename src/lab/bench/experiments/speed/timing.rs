@@ -300,7 +300,7 @@ fn evaluated(
         runner: Runner::Ours,
         kind: Some(candidate.kind),
         setting: candidate.setting.clone(),
-        samples: Some(Counts::of(&counted, &scene.picture).samples),
+        samples: Some(Counts::of(&counted, &scene.picture, counted.size.pixels() as u64).samples),
         error: Some(reference.error(candidate.kind.mode(), &frame)?),
         note: None,
         taken: Vec::new(),

@@ -1,0 +1,127 @@
+// Fills the pixels of a sparse picture that were not cast: bilinearly from the corners of their blocks, or, with
+// EMPTY, with what a ray leaves that meets nothing.
+//
+// An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value and normal are means
+// of the corners that did. Where there is no kind, what a corner met shows in its depth, and what a pixel
+// meets in its opacity.
+//
+// Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE, NORMAL,
+// COUNTERS, CERTIFICATE).
+#include "lib/ray/blocks.clh"
+#include "lib/ray/planes.clh"
+
+#if WITH_COLOR
+#define COLOR_PLANE , global float4 *color
+#else
+#define COLOR_PLANE
+#endif
+#if WITH_KIND
+#define KIND_PLANE , global uint *kind
+#else
+#define KIND_PLANE
+#endif
+#if WITH_DEPTH
+#define DEPTH_PLANE , global float *depth
+#else
+#define DEPTH_PLANE
+#endif
+#if WITH_VALUE
+#define VALUE_PLANE , global float *value
+#else
+#define VALUE_PLANE
+#endif
+#if WITH_NORMAL
+#define NORMAL_PLANE , global float4 *normal
+#else
+#define NORMAL_PLANE
+#endif
+#if COUNTERS
+#define COUNTER_PLANES , global uint *steps, global uint *nodes
+#else
+#define COUNTER_PLANES
+#endif
+#if CERTIFICATE
+#define CERTIFICATE_PLANE , global uint *certificate
+#else
+#define CERTIFICATE_PLANE
+#endif
+
+kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const global uint *cast COLOR_PLANE KIND_PLANE DEPTH_PLANE
+                        VALUE_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
+{
+    Pixels pixels = tile_pixels(rays);
+    pixels.inside = pixels.inside & read_ints(cast, pixels) == (int)MARK_FILLED;
+    if (!ANY(pixels.inside))
+        return;
+#if EMPTY
+    Mask meets = NO_LANE;
+    Ints nearest = INTS(KIND_NOTHING);
+    Floats4 light = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
+#else
+    BlockCorners corners = block_corners(pixels.i, pixels.j, spacing, rays.width, rays.height);
+    Mask meets = ALL_LANES;
+#if WITH_COLOR
+    Floats4 light = blend(color, corners.place, corners.weight);
+    meets = light.w >= opaque_from;
+#endif
+    // The corners that met something, by their weights.
+    Floats weight[4];
+    Ints nearest = INTS(KIND_NOTHING);
+    Floats greatest = FLOATS(-1.0f);
+    for (int n = 0; n < 4; n++) {
+        Mask met = ALL_LANES;
+#if WITH_KIND
+        Ints corner = GATHER(Ints, kind, corners.place[n]);
+        met = corner != KIND_NOTHING;
+        Mask nearer = corners.weight[n] > greatest;
+        nearest = nearer ? corner : nearest;
+        greatest = nearer ? corners.weight[n] : greatest;
+#elif WITH_DEPTH
+        met = GATHER(Floats, depth, corners.place[n]) < INFINITY;
+#endif
+        weight[n] = met ? corners.weight[n] : FLOATS(0.0f);
+    }
+#if WITH_KIND
+    meets = nearest != KIND_NOTHING;
+#endif
+#endif
+#if WITH_KIND
+    SCATTER(pixels.inside, kind, pixels.index, nearest);
+#endif
+#if WITH_COLOR
+    scatter_float4(color, pixels, light);
+#endif
+#if WITH_DEPTH
+    Floats depth_mm = FLOATS(INFINITY);
+#if !EMPTY
+    depth_mm = meets ? mean_of(depth, corners.place, weight) : depth_mm;
+#endif
+    SCATTER(pixels.inside, depth, pixels.index, depth_mm);
+#endif
+#if WITH_VALUE
+    Floats phi = FLOATS(0.0f);
+#if !EMPTY
+    phi = meets ? mean_of(value, corners.place, weight) : phi;
+#endif
+    SCATTER(pixels.inside, value, pixels.index, phi);
+#endif
+#if WITH_NORMAL
+    Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
+#if !EMPTY
+    Floats4 mean = blend(normal, corners.place, weight);
+    Floats length = sqrt(mean.x * mean.x + mean.y * mean.y + mean.z * mean.z);
+    Mask points = meets & length > 0.0f;
+    n.x = points ? mean.x / length : n.x;
+    n.y = points ? mean.y / length : n.y;
+    n.z = points ? mean.z / length : n.z;
+#endif
+    scatter_float4(normal, pixels, n);
+#endif
+#if COUNTERS
+    SCATTER(pixels.inside, steps, pixels.index, INTS(0));
+    SCATTER(pixels.inside, nodes, pixels.index, INTS(0));
+#endif
+#if CERTIFICATE
+    SCATTER(pixels.inside, certificate, pixels.index, INTS(EMPTY ? CERTIFICATE_MISS : CERTIFICATE_UNDECIDED));
+#endif
+}

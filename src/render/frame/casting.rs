@@ -1,0 +1,30 @@
+//! How many rays a picture has: one a pixel, fewer, or more.
+
+use crate::error::Result;
+use crate::render::passes::Run;
+
+use super::antialias::cast_antialiased;
+use super::picture::schedule;
+use super::planes::Planes;
+use super::sparse::cast_sparsely;
+use super::view::View;
+
+/// Casts the scene's picture: every pixel once, or where the picture is a `whole` one as many rays as the scene
+/// asks for.
+///
+/// # Errors
+/// As [`schedule`] and [`Run::cast`].
+pub fn cast_picture(run: &mut Run, view: &View, is_whole: bool) -> Result<Planes> {
+    let schedule = schedule(run, view)?;
+    let aa = view.scene.anti_aliasing;
+    if let Some(sparse) = view.scene.sparse.filter(|_| is_whole) {
+        return cast_sparsely(run, view, schedule.as_ref(), sparse);
+    }
+    if aa.rays() > 1 && is_whole {
+        return cast_antialiased(run, view, schedule.as_ref(), aa);
+    }
+    let mut planes = schedule.planes(run)?;
+    schedule.cast(run, &mut planes)?;
+    planes.rays_per_round.push(run.rays.count() as u64);
+    Ok(planes)
+}

@@ -1,0 +1,16 @@
+//! `kernels/pass/count_marked.cl`
+
+use crate::error::Result;
+use crate::gpu::Buffer;
+use crate::render::abi::LISTED_SQUARE;
+
+use super::run::Run;
+
+/// Counts the pixels of each square that are marked in `cast` to be cast next.
+pub fn count_marked(run: &mut Run, cast: &Buffer<u32>, counts: &mut Buffer<u32>) -> Result<()> {
+    let args = run
+        .screen_args()?
+        .read("cast", cast)
+        .write("counts", counts);
+    run.squares("count_marked", run.scalar_defines(), args, LISTED_SQUARE)
+}

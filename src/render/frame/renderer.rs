@@ -157,7 +157,7 @@ impl<'a> Renderer<'a> {
         self.render_rays(scene, wanted, None)
     }
 
-    /// Casts some pixels of a scene, counted row by row. The frame's others are empty: transparent, with every
+    /// Casts some pixels of a scene, counted row by row, each by one ray. The frame's others are empty: transparent, with every
     /// layer's value where nothing is known ([`Layer::empty`](crate::frame::Layer::empty)).
     ///
     /// # Errors

@@ -168,6 +168,20 @@ fn weights([x0, x1, y0, y1]: Block, x: u32, y: u32) -> [f64; 4] {
     [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v]
 }
 
+/// The mean of corners' numbers; one without weight may be infinite.
+fn mean(corners: [usize; 4], weights: [f64; 4], of: impl Fn(usize) -> f64) -> f64 {
+    let parts = corners.into_iter().zip(weights);
+    let parts = parts.map(|(corner, w)| if w > 0.0 { w * of(corner) } else { 0.0 });
+    parts.sum::<f64>() / weights.iter().sum::<f64>()
+}
+
+/// Whether every normal is of unit length, or 0.
+fn has_unit_normals(frame: &Frame) -> bool {
+    let normals = frame.plane(NORMAL).into_iter().flatten();
+    let mut lengths = normals.map(|normal| DVec3::from(normal.map(f64::from)).length());
+    lengths.all(|length| length == 0.0 || (length - 1.0).abs() < 1e-5)
+}
+
 /// Whether an interpolated number is the expected one. A mean has no depth: both are infinite.
 fn is_near(expected: f64, number: f32) -> bool {
     let number = f64::from(number);
@@ -204,17 +218,11 @@ fn what_is_not_cast_is_interpolated_in_its_block() {
                     continue;
                 }
                 let weights = weights(block, x, y);
-                let mean = |of: &dyn Fn(usize) -> f64, only_met: bool| {
-                    let parts = corners.iter().zip(weights).zip(met);
-                    let parts = parts.filter(|(_, met)| *met || !only_met);
-                    let (sum, all) = parts.fold((0.0, 0.0), |(sum, all), ((&c, w), _)| {
-                        (sum + if w > 0.0 { w * of(c) } else { 0.0 }, all + w)
-                    });
-                    sum / all
-                };
+                let of_met = [0, 1, 2, 3].map(|n| if met[n] { weights[n] } else { 0.0 });
                 if !is_projection {
                     for channel in 0..4 {
-                        let light = mean(&|c| f64::from(whole.color[c][channel]), false);
+                        let of = |corner: usize| f64::from(whole.color[corner][channel]);
+                        let light = mean(corners, weights, of);
                         assert!((light - f64::from(frame.color[pixel][channel])).abs() < 2e-6);
                     }
                 }
@@ -226,7 +234,7 @@ fn what_is_not_cast_is_interpolated_in_its_block() {
                 if kinds[pixel] == Kind::Nothing as u32 {
                     assert_eq!((values[pixel], depths[pixel]), (0.0, f32::INFINITY));
                 } else if met.iter().any(|&met| met) {
-                    let mean = |plane: &[f32]| mean(&|c| f64::from(plane[c]), true);
+                    let mean = |plane: &[f32]| mean(corners, of_met, |c| f64::from(plane[c]));
                     let mode = scene.picture.mode();
                     for (of, seen) in [(&value, values[pixel]), (&depth, depths[pixel])] {
                         assert!(
@@ -240,13 +248,7 @@ fn what_is_not_cast_is_interpolated_in_its_block() {
                 wrong += usize::from(frame.color[pixel] != whole.color[pixel]);
             }
         }
-        let normals = frame
-            .plane(NORMAL)
-            .unwrap()
-            .iter()
-            .map(|n| DVec3::from(n.map(f64::from)));
-        let unit = |n: DVec3| n == DVec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
-        assert!(normals.into_iter().all(unit));
+        assert!(has_unit_normals(&frame));
     }
     assert!(wrong > 1000, "{wrong}");
 }

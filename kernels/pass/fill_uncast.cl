@@ -1,9 +1,9 @@
 // Fills the pixels of a sparse picture that were not cast: bilinearly from the corners of their blocks, or, with
 // EMPTY, with what a ray leaves that meets nothing.
 //
-// An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value and normal are means
-// of the corners that did. Where there is no kind, what a corner met shows in its depth, and what a pixel
-// meets in its opacity.
+// An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value and
+// normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
+// what a pixel meets in its opacity.
 //
 // Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE, NORMAL,
 // COUNTERS, CERTIFICATE).

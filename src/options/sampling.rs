@@ -60,7 +60,7 @@ group! {
         voxels: Storage,
 
         /// Rays in every pixel, N x N, whose mean is its colour, N from 1 to 8; or N:adaptive, one ray in
-        /// pixels where more would show nothing else
+        /// pixels that look like their neighbours, and in iso no more in those proven to show nothing
         #[arg(long, value_name = "N[:adaptive]", allow_hyphen_values = true)]
         aa: AntiAliasing,
 

@@ -22,8 +22,8 @@ impl AntiAliasing {
     /// The most rays along a pixel's side.
     pub const MAX_PER_SIDE: u32 = 8;
 
-    /// Makes it of the number of rays along a pixel's side, and of whether pixels have one ray where more
-    /// would show nothing else.
+    /// Makes it of the number of rays along a pixel's side, and of whether pixels that look like their
+    /// neighbours have one ray alone.
     ///
     /// # Errors
     /// Usage: a number outside 1 to [`Self::MAX_PER_SIDE`].
@@ -50,7 +50,7 @@ impl AntiAliasing {
         self.per_side * self.per_side
     }
 
-    /// Whether pixels have one ray where more would show nothing else.
+    /// Whether pixels that look like their neighbours have one ray alone.
     pub const fn is_adaptive(self) -> bool {
         self.is_adaptive
     }

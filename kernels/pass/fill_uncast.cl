@@ -1,5 +1,6 @@
-// Fills the pixels of a sparse picture that were not cast: bilinearly from the corners of their blocks, or, with
-// EMPTY, with what a ray leaves that meets nothing.
+// Fills the pixels of a sparse picture that were not cast. FILLING_EMPTY: with what a ray leaves that meets nothing.
+// FILLING_GRID: bilinearly from the corners of their blocks on a grid. FILLING_BLOCKS: as the first those with MARK_FILLED, as
+// the second those whose marks say that they belong to a block of their own (marks.clh).
 //
 // An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value and
 // normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
@@ -50,18 +51,33 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
                         VALUE_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
-    pixels.inside = pixels.inside & read_ints(cast, pixels) == (int)MARK_FILLED;
+    Ints mark = read_ints(cast, pixels);
+#if FILLING == FILLING_BLOCKS
+    Mask shown = mark >= (int)MARK_BLOCK;
+    pixels.inside = pixels.inside & (shown | mark == (int)MARK_FILLED);
+    Ints side = shown ? side_of_mark(mark) : INTS(1);
+    int beyond = 0;
+#else
+    pixels.inside = pixels.inside & mark == (int)MARK_FILLED;
+    Mask shown = ALL_LANES;
+    Ints side = INTS((int)spacing);
+    int beyond = 1;
+#endif
     if (!ANY(pixels.inside))
         return;
-#if EMPTY
+#if FILLING == FILLING_EMPTY
     Mask meets = NO_LANE;
     Ints nearest = INTS(KIND_NOTHING);
     Floats4 light = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
 #else
-    BlockCorners corners = block_corners(pixels.i, pixels.j, spacing, rays.width, rays.height);
-    Mask meets = ALL_LANES;
+    BlockCorners corners = block_corners(block_side(pixels.i, side, beyond, rays.width), block_side(pixels.j, side, beyond, rays.height), rays.width);
+    Mask meets = shown;
 #if WITH_COLOR
     Floats4 light = blend(color, corners.place, corners.weight);
+    light.x = shown ? light.x : FLOATS(0.0f);
+    light.y = shown ? light.y : FLOATS(0.0f);
+    light.z = shown ? light.z : FLOATS(0.0f);
+    light.w = shown ? light.w : FLOATS(0.0f);
     meets = light.w >= opaque_from;
 #endif
     // The corners that met something, by their weights.
@@ -82,6 +98,7 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
         weight[n] = met ? corners.weight[n] : FLOATS(0.0f);
     }
 #if WITH_KIND
+    nearest = shown ? nearest : INTS(KIND_NOTHING);
     meets = nearest != KIND_NOTHING;
 #endif
 #endif
@@ -93,21 +110,21 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
 #endif
 #if WITH_DEPTH
     Floats depth_mm = FLOATS(INFINITY);
-#if !EMPTY
+#if FILLING != FILLING_EMPTY
     depth_mm = meets ? mean_of(depth, corners.place, weight) : depth_mm;
 #endif
     SCATTER(pixels.inside, depth, pixels.index, depth_mm);
 #endif
 #if WITH_VALUE
     Floats phi = FLOATS(0.0f);
-#if !EMPTY
+#if FILLING != FILLING_EMPTY
     phi = meets ? mean_of(value, corners.place, weight) : phi;
 #endif
     SCATTER(pixels.inside, value, pixels.index, phi);
 #endif
 #if WITH_NORMAL
     Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
-#if !EMPTY
+#if FILLING != FILLING_EMPTY
     Floats4 mean = blend(normal, corners.place, weight);
     Floats length = sqrt(mean.x * mean.x + mean.y * mean.y + mean.z * mean.z);
     Mask points = meets & length > 0.0f;
@@ -122,6 +139,6 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     SCATTER(pixels.inside, nodes, pixels.index, INTS(0));
 #endif
 #if CERTIFICATE
-    SCATTER(pixels.inside, certificate, pixels.index, INTS(EMPTY ? CERTIFICATE_MISS : CERTIFICATE_UNDECIDED));
+    SCATTER(pixels.inside, certificate, pixels.index, INTS(FILLING == FILLING_EMPTY ? CERTIFICATE_MISS : CERTIFICATE_UNDECIDED));
 #endif
 }

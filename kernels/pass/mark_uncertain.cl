@@ -1,86 +1,126 @@
 // Marks the pixels of a surface's picture that must be cast: all but those of blocks that are proven to show
 // nothing, because the frustum around all their rays meets no cell that the surface may cross and nothing
-// inside. A pixel's rays pass it within `margin` pixels of its centre. Large blocks are tested first; one that is
-// not proven is parted into four, down to blocks of `spacing` pixels.
+// inside, and, with SURFACES, all but the corners of those that are proven to show one smooth piece of the surface alone,
+// which bilinear interpolation misses by no more than `max_error_mm`. A pixel's rays pass it within `margin` pixels of its
+// centre.
+//
+// Large blocks are tested first; one that is not proven is parted into four, down to blocks of `spacing` pixels. Those of up
+// to `widest` may be interpolated. With HITS_KNOWN, where the smallest are single pixels, none is tested whose ray met something or one
+// beside it.
 //
 // A work-item tests a square of `spacing` << `block_levels` pixels a side. Reads the voxels and per octree node its
-// CLASS_*, and a bit per cell that the surface may cross. Writes cast.
-#include "lib/ray/camera.clh"
-#include "lib/skip/packet.clh"
+// CLASS_*, a bit per cell that the surface may cross, the clip planes (index space), and with HITS_KNOWN kind. Writes cast.
+#include "lib/ray/block_walk.clh"
+#include "lib/skip/smooth_surface.clh"
 
 #if LANES != 8
 #error "the rays at a block's corners stand in lanes, two times four: LANES is 8"
 #endif
 
-// The outermost rays of a block.
-static inline Ray corner_rays(RayGrid rays, int x, int y, int side, float margin)
+#if HITS_KNOWN
+#define KIND_PLANE , const global uint *kind
+
+// Whether a pixel's ray, or one of the four beside it, met something.
+static inline bool is_beside_hit(RayGrid rays, int x, int y, const global uint *kind)
 {
-    float left = (float)x - margin;
-    float above = (float)y - margin;
-    float right = (float)(min(x + side, (int)rays.width) - 1) + margin;
-    float below = (float)(min(y + side, (int)rays.height) - 1) + margin;
-    return camera_ray_at(rays, (Floats)(left, right, left, right, left, right, left, right),
-                         (Floats)(above, above, below, below, above, above, below, below));
+    int left = max(x - 1, 0);
+    int right = min(x + 1, (int)rays.width - 1);
+    int above = max(y - 1, 0) * (int)rays.width;
+    int below = min(y + 1, (int)rays.height - 1) * (int)rays.width;
+    int row = y * (int)rays.width;
+    return kind[row + x] != KIND_NOTHING || kind[row + left] != KIND_NOTHING || kind[row + right] != KIND_NOTHING
+        || kind[above + x] != KIND_NOTHING || kind[below + x] != KIND_NOTHING;
+}
+#define IS_KNOWN(block) ((block).side == 1 && is_beside_hit(rays, (block).x, (block).y, kind))
+#else
+#define KIND_PLANE
+#define IS_KNOWN(block) false
+#endif
+
+// Whether the field is below iso in all slices of a region, within the frustum.
+static inline bool is_below(VOXELS voxels, const Packet *packet, PacketRegion region, float iso)
+{
+    float below = iso - fabs(iso) * 1e-6f;
+    FieldRange range = {-INFINITY, below};
+    for (int slice = region.low; slice < region.high && range.max == below; slice++)
+        extend_by_slice(&range, voxels, packet, slice);
+    return range.max == below;
 }
 
-static inline bool is_empty(VOXELS voxels, SkipGrid grid, VolumeGrid volume, float iso, Ray corners)
+#define LOOKED_INSIDE 2
+
+// The slices of cells in which a frustum meets what may lie inside, none of them outside `known`; false: there are none.
+// Blocks of the lowest LOOKED_INSIDE levels look into cells too where they pass those that the surface may cross, and
+// those of the lowest stop at the first slice that is met.
+static inline bool meets(VOXELS voxels, const SkipGrid *grid, VolumeGrid volume, float iso, Ray corners, int level, SliceRange known,
+                         SliceRange *met)
 {
     Packet packet;
-    if (!frustum_start(&packet, corners, grid.levels, volume))
-        return false;
+    PacketLines lines;
+    *met = known;
+    if (!frustum_start(&packet, corners, grid->levels, volume, &lines))
+        return true;
+    packet_within(&packet, known);
+    met->axis = packet.main.index;
+    met->low = INT_MAX;
+    met->high = INT_MIN;
     Ints tested = INTS(0);
     PacketRegion region;
-    while (packet_next(&packet, voxels, &grid, iso, &region, &tested))
-        if (region.class != CLASS_BELOW)
-            return false;
-    return true;
-}
-
-static inline void mark_block(RayGrid rays, int x, int y, int side, uint mark, global uint *cast)
-{
-    int x_end = min(x + side, (int)rays.width);
-    int y_end = min(y + side, (int)rays.height);
-    for (int j = y; j < y_end; j++)
-        for (int i = x; i < x_end; i++)
-            cast[j * (int)rays.width + i] = mark;
-}
-
-// Every second bit of a number.
-static inline int every_second_bit(int n)
-{
-    int bits = 0;
-    for (int bit = 0; bit < 8; bit++)
-        bits |= (n >> (2 * bit) & 1) << bit;
-    return bits;
-}
-
-kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, float margin, float iso,
-                           global uint *cast)
-{
-    int square_side = (int)(spacing << block_levels);
-    int x = (int)get_global_id(0) * square_side;
-    int y = (int)get_global_id(1) * square_side;
-    if (x >= (int)rays.width || y >= (int)rays.height)
-        return;
-    SkipGrid grid = skip_by_class(node_class, levels, cells);
-    // The smallest blocks in Morton order: a block of level n begins where 2n bits of its number are 0. After
-    // one that is not proven come its quarters, after one that is proven the next that begins there.
-    int last = 1 << (2 * (int)block_levels);
-    int level = (int)block_levels;
-    for (int n = 0; n < last;) {
-        int block_x = x + every_second_bit(n) * (int)spacing;
-        int block_y = y + every_second_bit(n >> 1) * (int)spacing;
-        int side = (int)spacing << level;
-        bool inside = block_x < (int)rays.width && block_y < (int)rays.height;
-        bool proven = !inside || is_empty(voxels, grid, volume, iso, corner_rays(rays, block_x, block_y, side, margin));
-        if (!proven && level > 0) {
-            level--;
+    while (packet_next(&packet, voxels, grid, iso, &region, &tested)) {
+        if (region.class == CLASS_BELOW || (level < LOOKED_INSIDE && region.class == CLASS_VISIT && is_below(voxels, &packet, region, iso)))
             continue;
+        met->low = min(met->low, region.low);
+        met->high = max(met->high, region.high - 1);
+        if (level == 0)
+            return true;
+    }
+    return met->low <= met->high;
+}
+
+#if SURFACES
+// Whether interpolation between a block's corners is proven to miss the surface by no more than an error.
+static inline bool is_smooth(VOXELS voxels, const SkipGrid *grid, ClipPlanes clip, VolumeGrid volume, RayGrid rays, Block block, float iso,
+                             float max_error_mm, SliceRange met)
+{
+    return smooth_error_mm(voxels, grid, clip, volume, iso, corner_rays(rays, block, 0.0f), block_spread(rays, block, met.axis), met) <= max_error_mm;
+}
+
+// In a square in which so many more blocks failed than were proven, no more are tried.
+#define MAX_FAILED 3
+#endif
+
+kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, uint widest,
+                           float margin, float max_error_mm, float iso KIND_PLANE, global uint *cast)
+{
+    SkipGrid grid = skip_by_class(node_class, levels, cells);
+    BlockWalk walk = block_walk(spacing, block_levels);
+    // Per level, what is known of its blocks from the one that they are quarters of.
+    SliceRange known[MAX_BLOCK_LEVELS + 1];
+    known[walk.level].axis = -1;
+#if SURFACES
+    int failed = 0;
+#endif
+    Block block;
+    while (block_next(&walk, rays, &block)) {
+        SliceRange met;
+        bool may_show = IS_KNOWN(block)
+                     || meets(voxels, &grid, volume, iso, corner_rays(rays, block, margin), walk.level, known[walk.level], &met);
+        bool smooth = false;
+#if SURFACES
+        if (may_show && block.side <= (int)widest && failed < MAX_FAILED) {
+            smooth = is_smooth(voxels, &grid, CLIP_GIVEN, volume, rays, block, iso, max_error_mm, met);
+            failed += smooth ? -1 : 1;
         }
-        if (inside)
-            mark_block(rays, block_x, block_y, side, proven ? MARK_FILLED : MARK_NEXT, cast);
-        n += 1 << (2 * level);
-        while (level < (int)block_levels && (n & ((4 << (2 * level)) - 1)) == 0)
-            level++;
+#endif
+        if (smooth) {
+            mark_interpolated(rays, block, (int)widest, met.axis, cast);
+        } else if (may_show && walk.level > 0) {
+            walk.level--;
+            known[walk.level] = met;
+            continue;
+        } else {
+            mark_block(rays, block, may_show ? MARK_NEXT : MARK_FILLED, cast);
+        }
+        block_pass(&walk);
     }
 }

@@ -14,7 +14,7 @@ use crate::options::rules::{Group, Need, has_needs, unmet};
 use crate::options::text_form::readable;
 use crate::progress::{Progress, UNKNOWN_TOTAL};
 use crate::reference;
-use crate::render::{GradientFigures, Lanes, Options, Renderer, check_volume};
+use crate::render::{GradientFigures, Lanes, Options, Renderer, SampleCheck, check_volume};
 use crate::scene::Scene;
 use crate::volume::Volume;
 
@@ -123,6 +123,8 @@ pub struct Rendered {
     pub frame: Frame,
     /// The rays of each round of casting.
     pub rays_per_round: Vec<u64>,
+    /// How much adaptive anti-aliasing may differ from the whole of it.
+    pub sample_check: Option<SampleCheck>,
     pub device: DeviceStats,
     /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
@@ -264,6 +266,7 @@ impl Caster<'_> {
                 Ok(Rendered {
                     frame: rendering.frame,
                     rays_per_round: rendering.rays_per_round,
+                    sample_check: rendering.sample_check,
                     device: device.info().into(),
                     times_ms: Times {
                         octree: *octree_ms,
@@ -313,6 +316,7 @@ fn by_reference(
     Ok(Rendered {
         frame,
         rays_per_round: vec![rays],
+        sample_check: None,
         device: reference_stats(),
         times_ms: Times {
             render: render_ms,

@@ -9,7 +9,7 @@ use crate::frame::{self, Frame, Wanted};
 use crate::lab::measure::Counts;
 use crate::lab::tolerance::{Choice, Cost, ToleranceStats};
 use crate::options::Resolved;
-use crate::render::GradientFigures;
+use crate::render::{GradientFigures, SampleCheck};
 use crate::scene::SamplingMethod;
 
 use super::backend::{Backend, Rendered};
@@ -123,6 +123,9 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
         rendered.device.name
     ));
     print_certificate(&rendered.frame, &resolved);
+    if let Some(check) = &rendered.sample_check {
+        message(check_line(check));
+    }
     write_stats(&drawing, rendered, times_ms, &resolved, choice.as_ref())
 }
 
@@ -164,6 +167,19 @@ fn print_certificate(frame: &Frame, resolved: &Resolved) {
     }
 }
 
+/// How much adaptive anti-aliasing may differ from the whole of it, as far as is known.
+fn check_line(check: &SampleCheck) -> String {
+    if check.pixels == 0 {
+        return "anti-aliasing: too few pixels have one ray alone to check any".to_owned();
+    }
+    format!(
+        "anti-aliasing: about {:.2}/255 (rmse) from all rays in every pixel; {:.1}/255 at most in {} pixels checked",
+        255.0 * check.rmse,
+        255.0 * check.max,
+        check.pixels
+    )
+}
+
 /// Writes the statistics where they are wanted.
 fn write_stats(
     drawing: &Drawing<'_>,
@@ -189,6 +205,7 @@ fn write_stats(
         passes: rendered.passes,
         counts: Counts::of(&rendered.frame, &resolved.scene.picture, rays),
         rays_per_round: rendered.rays_per_round,
+        sample_check: rendered.sample_check,
         memory: Memory::now(
             rendered.device_bytes,
             rendered.gradients.map_or(0, |figures| figures.bytes),

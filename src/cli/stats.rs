@@ -11,6 +11,7 @@ use crate::lab::measure::{Counts, host_peak_bytes};
 use crate::lab::tolerance::ToleranceStats;
 use crate::options::SceneOptions;
 use crate::output::write_atomically;
+use crate::render::SampleCheck;
 use crate::volume::Volume;
 
 use super::terminal::write_json;
@@ -31,6 +32,9 @@ pub struct Stats<'a> {
     /// The rays of each round of casting; of a single picture.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rays_per_round: Vec<u64>,
+    /// How much adaptive anti-aliasing may differ from the whole of it; of a single picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_check: Option<SampleCheck>,
     pub memory: Memory,
     /// Where an error bound decided how rays are followed.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -5,7 +5,7 @@ use super::group::Keys;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
-use crate::scene::{Mode, SamplingMethod, Sparse};
+use crate::scene::{Mode, SamplingMethod};
 
 /// The order in which needs are checked: that an option belongs to another mode says more than that
 /// something else is missing.
@@ -35,9 +35,7 @@ impl SceneOptions {
             ))
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
         }
-        if let Some(grid) = self.sampling.sparse {
-            Sparse::new(grid, self.sampling.refill, self.mode())?;
-        }
+        self.sampling.sparse_in(self.mode())?;
         let voxels = self.sampling.voxels.unwrap_or_default();
         voxels.check(self.method(), self.sampling.filter.unwrap_or_default())?;
         if let Some(choice) = self.picture.tf.take() {
@@ -82,7 +80,7 @@ impl SceneOptions {
             }
             Need::Eye => self.camera.eye.is_some(),
             Need::Homogeneity => self.picture.homogeneity.is_some(),
-            Need::Sparse => self.sampling.sparse.is_some(),
+            Need::Sparse => self.sampling.is_sparse(),
             // Of options beside the scene.
             Need::OpenCl
             | Need::Layered

@@ -49,10 +49,18 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
     Contradiction {
         is_in: |all| {
             let many_rays = all.sampling.aa.is_some_and(|aa| aa.rays() > 1);
-            many_rays && all.sampling.sparse.is_some()
+            many_rays && all.sampling.is_sparse()
         },
-        sentence: "'aa' and 'sparse' cannot be combined: one casts many rays in a pixel, the other none in most",
+        sentence: "'aa' cannot be combined with 'sparse' or 'screen-error': one casts many rays in a pixel, the other none in most",
         hint: "",
+    },
+    Contradiction {
+        is_in: |all| {
+            let is_stepped = all.mode() != Mode::Dvr && all.method() == SamplingMethod::Fixed;
+            is_stepped && all.sampling.screen_error.is_some()
+        },
+        sentence: "'screen-error' cannot be combined with fixed steps: what they find is not proven to be what there is",
+        hint: "choose sampling exact, or leave screen-error out",
     },
     Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
@@ -147,10 +155,10 @@ pub(super) const REPLACED: &[Replaced] = &[
     // Many rays in a pixel replace rays in few pixels, and the other way round.
     Replaced {
         by: |flags, _| flags.sampling.aa.is_some_and(|aa| aa.rays() > 1),
-        options: &["sparse", "refill"],
+        options: &["sparse", "refill", "screen-error"],
     },
     Replaced {
-        by: |flags, _| flags.sampling.sparse.is_some(),
+        by: |flags, _| flags.sampling.is_sparse(),
         options: &["aa"],
     },
     // An eye replaces a view and a view an eye, each with what turns it.

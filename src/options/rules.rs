@@ -15,7 +15,7 @@ use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
     AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode,
-    Picture, Quadrature, Refill, Refine, Reflectance, Sampling, SamplingMethod, Shininess,
+    Picture, Quadrature, Refill, Refine, Reflectance, Sampling, SamplingMethod, Shininess, Sparse,
     SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
 };
 
@@ -183,6 +183,7 @@ pub(crate) const RULES: &[Rule] = &[
     scene("aa", What, &[]).default(text::<AntiAliasing>),
     scene("sparse", HowWithinBound, &[]).default(|| "every pixel".to_owned()),
     scene("refill", HowWithinBound, &[Need::Sparse]).default(default_refill),
+    scene("screen-error", HowWithinBound, &[]).default(default_screen_error),
 
     scene("mode", What, &[])
         .default(text::<Mode>),
@@ -302,10 +303,18 @@ fn default_quadrature() -> String {
 
 fn default_refill() -> String {
     format!(
-        "{} where --sparse has a threshold, {} in iso, {} elsewhere",
+        "{3} with --screen-error, {0} where --sparse has a threshold, otherwise {1} in iso, {2} elsewhere",
         Refill::Gradient,
         Refill::of(Mode::Iso),
-        Refill::of(Mode::Mip)
+        Refill::of(Mode::Mip),
+        Refill::Certified
+    )
+}
+
+fn default_screen_error() -> String {
+    format!(
+        "{} where the refill of iso is certified, else none",
+        Sparse::SURFACE_ERROR
     )
 }
 

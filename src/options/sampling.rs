@@ -5,8 +5,8 @@ use super::group::group;
 use super::text_form::text_form;
 use crate::error::Result;
 use crate::scene::{
-    AntiAliasing, Filter, Mode, Refill, Sampling, SamplingMethod, Sparse, SparseGrid, StepVoxels,
-    Storage, Traverse,
+    AntiAliasing, Filter, Mode, Refill, Sampling, SamplingMethod, ScreenError, Sparse, SparseGrid,
+    StepVoxels, Storage, Traverse,
 };
 
 text_form!(
@@ -14,6 +14,7 @@ text_form!(
     Filter,
     Refill,
     SamplingMethod,
+    ScreenError,
     SparseGrid,
     StepVoxels,
     Storage,
@@ -71,10 +72,17 @@ group! {
         sparse: SparseGrid,
 
         /// The blocks of pixels that are cast and not interpolated: none; gradient, those whose corners
-        /// differ; flood, also those whose edges do, until there is no further one; or certified (iso), those
-        /// that are not proven to be empty, so that no pixel is lost
+        /// differ; flood, also those whose edges do, until there is no further one; or certified, those that
+        /// are not proven to be within --screen-error, so that no pixel is lost
         #[arg(long, value_name = "NAME")]
         refill: Refill,
+
+        /// Cast the pixels alone that cannot be filled within an error, proven before any ray is cast: in
+        /// iso voxels of depth, and no hit is lost; in projections a share of the volume's range of values;
+        /// in dvr linear light of a channel, beside the quadrature's own error. --sparse K: of blocks K pixels
+        /// wide, else 8
+        #[arg(long, value_name = "E", allow_hyphen_values = true)]
+        screen_error: ScreenError,
     }
 }
 
@@ -84,7 +92,7 @@ impl SamplingOptions {
     pub(super) fn resolve(self, method: SamplingMethod) -> (Sampling, Self) {
         let default = Sampling::default();
         let anti_aliasing = self.aa.unwrap_or_default();
-        let (sparse, refill) = (self.sparse, self.refill);
+        let (sparse, refill, screen_error) = (self.sparse, self.refill, self.screen_error);
         let given = match method {
             SamplingMethod::Fixed => self,
             SamplingMethod::Exact => Self {
@@ -114,6 +122,7 @@ impl SamplingOptions {
             aa: Some(anti_aliasing),
             sparse,
             refill,
+            screen_error,
         };
         (sampling, options)
     }
@@ -123,10 +132,26 @@ impl SamplingOptions {
     /// # Errors
     /// As [`Sparse::new`].
     pub(super) fn resolve_sparse(&mut self, mode: Mode) -> Result<Option<Sparse>> {
-        let sparse = self.sparse.map(|grid| Sparse::new(grid, self.refill, mode));
-        let sparse = sparse.transpose()?;
+        let sparse = self.sparse_in(mode)?;
         self.sparse = sparse.map(Sparse::grid);
         self.refill = sparse.map(|sparse| sparse.refill);
+        self.screen_error = sparse.and_then(Sparse::kept_error);
         Ok(sparse)
+    }
+
+    /// Sparse casting in a mode, where it is wanted.
+    ///
+    /// # Errors
+    /// As [`Sparse::new`].
+    pub(super) fn sparse_in(&self, mode: Mode) -> Result<Option<Sparse>> {
+        if !self.is_sparse() {
+            return Ok(None);
+        }
+        Sparse::new(self.sparse, self.refill, self.screen_error, mode).map(Some)
+    }
+
+    /// Whether pixels may be filled instead of being cast.
+    pub(super) fn is_sparse(&self) -> bool {
+        self.sparse.is_some() || self.screen_error.is_some()
     }
 }

@@ -10,6 +10,6 @@ mod ray_caster;
 mod resources;
 
 pub use abi::{Lanes, Variant, struct_layouts};
-pub use frame::{Options, Renderer, Rendering, Sampled, check_picture, check_volume};
+pub use frame::{Options, Renderer, Rendering, SampleCheck, Sampled, check_picture, check_volume};
 pub use ray_caster::{FirstCrossing, RayCaster};
 pub use resources::{AngleError, Directions, GradientFigures, IndexRay};

@@ -39,8 +39,8 @@ pub use path::{FrameCount, Orbit, OrbitAxis};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
-    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, Shininess,
-    StepVoxels, Termination,
+    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, ScreenError,
+    Shininess, StepVoxels, Termination,
 };
 pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse};
 pub use sparse::{Refill, Sparse, SparseGrid};

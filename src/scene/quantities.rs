@@ -71,6 +71,9 @@ quantities! {
     Termination = 0.999: "a termination", "above 0 and at most 1", |v| v > 0.0 && v <= 1.0;
     /// Error of a pixel, or share of the value range, within which a node is homogeneous.
     HomogeneityLimit: "a homogeneity", "above 0 and at most 1", |v| v > 0.0 && v <= 1.0;
+    /// How much a pixel that is not cast may differ from what its ray would show: voxels of depth of a surface, a
+    /// share of the volume's range of values of a projection, a channel's linear light of a medium.
+    ScreenError: "a screen error", "from 0 to 10", |v| (0.0..=10.0).contains(&v);
     /// Number added to the encoded channels of a display picture.
     Brightness = 0.0: "a brightness", "from -1 to 1", |v| (-1.0..=1.0).contains(&v);
     /// Slope about a display picture's middle grey.

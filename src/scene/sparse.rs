@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::Mode;
+use super::{Mode, ScreenError};
 use crate::error::{Error, Result};
 
 /// How blocks are found that must not be interpolated (`--refill`); their pixels are all cast.
@@ -15,7 +15,7 @@ pub enum Refill {
     /// Those whose corners differ, or whose edges, where a neighbouring block was cast, differ from what would be
     /// interpolated; until there is no further one.
     Flood,
-    /// Those that are not proven to be what they would be filled with.
+    /// Those that are not proven to be, within an error, what they would be filled with.
     Certified,
 }
 
@@ -26,6 +26,11 @@ impl Refill {
             Mode::Iso => Self::Certified,
             _ => Self::Gradient,
         }
+    }
+
+    /// Whether blocks are found by how much pixels differ.
+    fn has_threshold(self) -> bool {
+        matches!(self, Self::Gradient | Self::Flood)
     }
 }
 
@@ -96,60 +101,89 @@ impl std::fmt::Display for SparseGrid {
     }
 }
 
-/// Sparse casting (`--sparse`, `--refill`).
+/// Sparse casting (`--sparse`, `--refill`, `--screen-error`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sparse {
-    /// Pixels from one grid line to the next; blocks lie between them.
+    /// Pixels from one grid line to the next, or where the refill is certified along the edge of the widest blocks that
+    /// are interpolated.
     pub spacing: u32,
     /// The greatest difference of channels, sRGB-encoded from 0 to 1, by which pixels do not differ.
     pub threshold: f64,
     /// How blocks are found that must not be interpolated.
     pub refill: Refill,
+    /// How much pixels may be wrong that a certified refill interpolates.
+    pub screen_error: ScreenError,
 }
 
 impl Sparse {
     /// The threshold where none is given.
     pub const THRESHOLD: f64 = 0.05;
 
-    /// Sparse casting by a grid. Where no refill is given it is gradient for a grid with a threshold, and
-    /// otherwise that of the mode ([`Refill::of`]).
+    /// The widest blocks of a certified refill where no grid is given, in pixels.
+    pub const WIDEST: u32 = 8;
+
+    /// The error of a surface's depth where none is given, in voxels.
+    pub const SURFACE_ERROR: f64 = 0.05;
+
+    /// Sparse casting by a grid, or by an error alone. Where no refill is given it is certified within an error that is
+    /// given, otherwise gradient for a grid with a threshold, otherwise that of the mode ([`Refill::of`]).
     ///
     /// # Errors
-    /// Usage: a certified refill in another mode than iso, or with a threshold, of which it has no use.
-    pub fn new(grid: SparseGrid, refill: Option<Refill>, mode: Mode) -> Result<Self> {
-        let implied = if grid.threshold.is_some() {
-            Refill::Gradient
-        } else {
-            Refill::of(mode)
+    /// Usage: a certified refill in another mode than iso without an error, an error with another refill, or a threshold
+    /// of which the refill has no use.
+    pub fn new(
+        grid: Option<SparseGrid>,
+        refill: Option<Refill>,
+        error: Option<ScreenError>,
+        mode: Mode,
+    ) -> Result<Self> {
+        let threshold = grid.and_then(SparseGrid::threshold);
+        let implied = match (error, threshold) {
+            (Some(_), _) => Refill::Certified,
+            (None, Some(_)) => Refill::Gradient,
+            (None, None) => Refill::of(mode),
         };
         let refill = refill.unwrap_or(implied);
-        if refill == Refill::Certified && mode != Mode::Iso {
+        if refill == Refill::Certified && mode != Mode::Iso && error.is_none() {
             return Err(Error::usage(format!(
-                "'refill' certified cannot be combined with mode '{mode}': only of a surface is it proven what a block shows"
+                "'refill' certified in mode '{mode}' needs 'screen-error', the error within which blocks are interpolated"
             ))
-            .hint("choose gradient or flood"));
+            .hint("give it, or choose gradient or flood"));
         }
-        let has_threshold = matches!(refill, Refill::Gradient | Refill::Flood);
-        if grid.threshold.is_some() && !has_threshold {
+        if refill != Refill::Certified && error.is_some() {
+            return Err(Error::usage(format!(
+                "'screen-error' and 'refill' {refill} cannot be combined: only what is certified keeps an error"
+            ))
+            .hint("leave one of the two out"));
+        }
+        if let (Some(grid), Some(_)) = (grid, threshold)
+            && !refill.has_threshold()
+        {
             return Err(Error::usage(format!(
                 "'sparse' {grid} has a threshold, of which 'refill' {refill} makes no use"
             ))
             .hint("leave the threshold out, or choose gradient or flood"));
         }
+        let of_surface = ScreenError::new(Self::SURFACE_ERROR)?;
         Ok(Self {
-            spacing: grid.spacing,
-            threshold: grid.threshold.unwrap_or(Self::THRESHOLD),
+            spacing: grid.map_or(Self::WIDEST, |grid| grid.spacing),
+            threshold: threshold.unwrap_or(Self::THRESHOLD),
             refill,
+            screen_error: error.unwrap_or(of_surface),
         })
     }
 
     /// The grid that makes the same, with its threshold where the refill has one.
     pub fn grid(self) -> SparseGrid {
-        let has_threshold = matches!(self.refill, Refill::Gradient | Refill::Flood);
         SparseGrid {
             spacing: self.spacing,
-            threshold: has_threshold.then_some(self.threshold),
+            threshold: self.refill.has_threshold().then_some(self.threshold),
         }
+    }
+
+    /// The error that makes the same, where the refill keeps one.
+    pub fn kept_error(self) -> Option<ScreenError> {
+        (self.refill == Refill::Certified).then_some(self.screen_error)
     }
 }
 
@@ -158,7 +192,7 @@ mod tests {
     use super::*;
 
     fn sparse(grid: &str, refill: Option<Refill>, mode: Mode) -> Result<Sparse> {
-        Sparse::new(grid.parse()?, refill, mode)
+        Sparse::new(Some(grid.parse()?), refill, None, mode)
     }
 
     #[test]
@@ -182,5 +216,25 @@ mod tests {
         assert!(sparse("4:0.1", Some(Refill::None), Mode::Iso).is_err());
         // The control.
         assert!(sparse("4", Some(Refill::None), Mode::Mip).is_ok());
+    }
+
+    #[test]
+    fn an_error_implies_certified_and_nothing_else_keeps_it() {
+        let error = Some(ScreenError::new(0.01).unwrap());
+        let of = |grid: Option<&str>, refill, mode| {
+            let grid = grid.map(str::parse).transpose()?;
+            Sparse::new(grid, refill, error, mode)
+        };
+        for mode in [Mode::Iso, Mode::Mip, Mode::Dvr] {
+            let alone = of(None, None, mode).unwrap();
+            assert_eq!((alone.spacing, alone.refill), (8, Refill::Certified));
+            assert_eq!(alone.kept_error(), error);
+            assert_eq!(of(Some("4"), None, mode).unwrap().spacing, 4);
+            assert!(of(Some("4"), Some(Refill::Flood), mode).is_err());
+            assert!(of(Some("4:0.1"), None, mode).is_err());
+        }
+        let surface = sparse("4", None, Mode::Iso).unwrap();
+        assert_eq!(surface.kept_error().unwrap().get(), 0.05);
+        assert_eq!(sparse("4", None, Mode::Mip).unwrap().kept_error(), None);
     }
 }

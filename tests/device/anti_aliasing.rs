@@ -3,7 +3,7 @@
 
 use angioray::frame::{CAST, COVERAGE, DEPTH, Frame, KIND, NODES, NORMAL, STEPS, VALUE, Wanted};
 use angioray::render::{Lanes, Options, Renderer};
-use angioray::scene::{AntiAliasing, Picture, SamplingMethod, Scene};
+use angioray::scene::{AntiAliasing, Picture, SamplingMethod, Scene, srgb_from_linear};
 use angioray::volume::Volume;
 
 use super::invariance::{pictures, tubes};
@@ -42,6 +42,23 @@ fn rmse(a: &Frame, b: &Frame) -> f64 {
             .collect::<Vec<_>>()
     });
     (squares.sum::<f64>() / (4 * a.color.len()) as f64).sqrt()
+}
+
+/// The differences of red, green and blue, sRGB-encoded.
+fn encoded_apart(a: &Frame, b: &Frame) -> Vec<f64> {
+    let encoded = |c: f32| srgb_from_linear(f64::from(c).max(0.0));
+    let pixels = a.color.iter().zip(&b.color);
+    let apart = pixels.flat_map(|(a, b)| [0, 1, 2].map(|c| (encoded(a[c]) - encoded(b[c])).abs()));
+    apart.collect()
+}
+
+fn rmse_encoded(a: &Frame, b: &Frame) -> f64 {
+    let apart = encoded_apart(a, b);
+    (apart.iter().map(|d| d * d).sum::<f64>() / apart.len() as f64).sqrt()
+}
+
+fn max_encoded(a: &Frame, b: &Frame) -> f64 {
+    encoded_apart(a, b).into_iter().fold(0.0, f64::max)
 }
 
 #[test]
@@ -127,6 +144,16 @@ fn adaptive_rays_give_the_picture_of_all_rays_at_a_share_of_them() {
     let share = adaptive.rays_per_round[1] as f64 / (16 * pixels) as f64;
 
     assert!(share < 0.6, "{share}");
+    // How wrong it is, is known from a few pixels that are checked.
+    let check = adaptive.sample_check.unwrap();
+    let encoded = rmse_encoded(&adaptive.frame, &all.frame);
+    assert!(check.pixels > 10, "{check:?}");
+    assert!(
+        (0.2..5.0).contains(&(check.rmse / encoded)),
+        "{check:?} {encoded}"
+    );
+    assert!(check.max <= max_encoded(&adaptive.frame, &all.frame) + 1e-5);
+    assert_eq!(one.sample_check, None);
     assert_eq!(all.rays_per_round, [pixels, 16 * pixels]);
     // A pixel that shows nothing to any ray has none more, and one that shows nothing to its first has all its
     // rays where any other may meet something: nothing thin is lost.

@@ -17,6 +17,7 @@ mod quadrature;
 mod ray_sources;
 mod refinement;
 mod sampling_alone;
+mod screen_error;
 mod sparse;
 mod termination;
 mod voxel_images;

@@ -1,5 +1,5 @@
 //! Sparse casting against its definition, made of whole pictures: which pixels are cast, what is interpolated
-//! between them, and that a certified picture is the whole one.
+//! between them, and that a certified picture without an error is the whole one.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +10,8 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Lanes, Options, Renderer, Rendering};
 use angioray::scene::{
-    ClipPlane, Filter, Mode, Picture, Refill, SamplingMethod, Scene, Sparse, SparseGrid, Traverse,
-    srgb_from_linear,
+    ClipPlane, Filter, Mode, Picture, Refill, SamplingMethod, Scene, ScreenError, Sparse,
+    SparseGrid, Traverse, srgb_from_linear,
 };
 use angioray::volume::Volume;
 use glam::DVec3;
@@ -25,7 +25,8 @@ const SIZE_PX: u32 = 89;
 fn sparse(spacing: u32, threshold: f64, refill: Refill) -> Sparse {
     let has_threshold = matches!(refill, Refill::Gradient | Refill::Flood);
     let grid = SparseGrid::new(spacing, has_threshold.then_some(threshold)).unwrap();
-    Sparse::new(grid, Some(refill), Mode::Iso).unwrap()
+    let nothing = (refill == Refill::Certified).then(|| ScreenError::new(0.0).unwrap());
+    Sparse::new(Some(grid), Some(refill), nothing, Mode::Iso).unwrap()
 }
 
 fn with(scene: &Scene, sparse: Sparse) -> Scene {

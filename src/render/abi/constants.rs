@@ -139,6 +139,19 @@ kernel_enum! {
 }
 
 kernel_enum! {
+    /// What a sparsely cast picture's pixels are filled with that were not cast.
+    pub enum Filling: u32 {
+        /// What a ray leaves that meets nothing.
+        Empty => FILLING_EMPTY = 0,
+        /// What is interpolated between the crossings of a grid.
+        Grid => FILLING_GRID = 1,
+        /// What is interpolated between the corners of blocks that have theirs to themselves; what a ray leaves that meets
+        /// nothing where there is no block.
+        Blocks => FILLING_BLOCKS = 2,
+    }
+}
+
+kernel_enum! {
     /// The loops of the projections' casts.
     pub enum ProjectionLoop: u32 {
         /// The greatest or smallest value.
@@ -176,6 +189,18 @@ const ADAPTIVE_HALVINGS: u32 = 10;
 /// Pixels along the edge of the squares in which pixels are counted and listed to be cast.
 pub const LISTED_SQUARE: u32 = 16;
 
+/// Of so many pixels with one ray, beside others with many, one is checked with many.
+pub const CHECKED_OF: u32 = 256;
+
+/// The mark of a pixel that was cast.
+pub const MARK_CAST: u32 = 1;
+
+/// The mark of a pixel that is cast next.
+const MARK_NEXT: u32 = 2;
+
+/// The first of the marks of pixels that are interpolated in a block that has its corners to itself.
+const MARK_BLOCK: u32 = 3;
+
 /// The numbers that belong to no enum, or to one whose own numbers pictures hold.
 const NUMBERS: &[(&str, u32)] = &[
     ("MAX_SAMPLES", MAX_SAMPLES),
@@ -186,11 +211,13 @@ const NUMBERS: &[(&str, u32)] = &[
     ("MAX_KNOTS", MAX_KNOTS),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("LISTED_SQUARE", LISTED_SQUARE),
-    // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next. The first
-    // two are the numbers of the layer `cast`.
+    ("CHECKED_OF", CHECKED_OF),
+    // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
+    // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),
-    ("MARK_CAST", 1),
-    ("MARK_NEXT", 2),
+    ("MARK_CAST", MARK_CAST),
+    ("MARK_NEXT", MARK_NEXT),
+    ("MARK_BLOCK", MARK_BLOCK),
     ("KIND_NOTHING", Kind::Nothing as u32),
     ("KIND_SURFACE", Kind::Surface as u32),
     ("KIND_CAP", Kind::Cap as u32),
@@ -212,6 +239,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         Class::CONSTANTS,
         Rays::CONSTANTS,
         ProjectionLoop::CONSTANTS,
+        Filling::CONSTANTS,
     ];
     tables.into_iter().flatten().copied()
 }

@@ -5,9 +5,11 @@ use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::{EmissionCast, KernelEnum, Shading, shading};
 use crate::render::occupancy::{Opacity, stand_ins};
-use crate::render::passes::{EmissionInputs, Run, adaptive_emission, cast_emission};
+use crate::render::passes::{
+    Blocks, EmissionInputs, MediumBlocks, Run, adaptive_emission, cast_emission, mark_varying_light,
+};
 use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
-use crate::scene::{Emission, Phong, Quadrature, Rgb, TransferFunction, Traverse};
+use crate::scene::{Emission, Phong, Quadrature, Rgb, ScreenError, TransferFunction, Traverse};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -24,6 +26,9 @@ pub struct EmissionPasses<'a> {
     cast: EmissionCast,
     shading: Shading,
     is_shaded: bool,
+    /// What shading makes of a colour at least and at most: it times the first, and it times the second plus the
+    /// third.
+    reflects: [f64; 4],
 }
 
 impl<'a> EmissionPasses<'a> {
@@ -49,6 +54,7 @@ impl<'a> EmissionPasses<'a> {
             cast: emission_cast(view, emission, &transfer, node_average.is_some()),
             shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
             is_shaded: emission.phong.is_some(),
+            reflects: emission.phong.map_or([1.0, 1.0, 0.0, 0.0], reflects),
             transfer,
             node_average,
         })
@@ -86,6 +92,23 @@ impl Schedule for EmissionPasses<'_> {
         } else {
             adaptive_emission(run, &inputs, color, layers)
         }
+    }
+
+    /// The error is of a channel's linear light, and of the opacity.
+    fn mark_unproven(
+        &self,
+        run: &mut Run,
+        blocks: Blocks,
+        error: ScreenError,
+        marks: &mut Buffer<u32>,
+    ) -> Result<()> {
+        let asked = MediumBlocks {
+            blocks,
+            max_error: error.get() as f32,
+            unit_length_mm: self.cast.unit_length_mm,
+            reflects: self.reflects.map(|share| share as f32),
+        };
+        mark_varying_light(run, self.view.inputs, &asked, marks)
     }
 }
 
@@ -174,6 +197,12 @@ fn traverse_through_leaves(view: &View) -> u32 {
         Traverse::Uniform
     };
     Some(traverse).number()
+}
+
+/// What shading makes of a colour at least and at most.
+fn reflects(phong: Phong) -> [f64; 4] {
+    let of_color = phong.ambient.get() + phong.diffuse.get();
+    [0.0, of_color, phong.specular.get(), 0.0]
 }
 
 /// The most light that white reflects.

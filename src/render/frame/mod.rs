@@ -10,6 +10,7 @@ mod planes;
 mod projection;
 mod renderer;
 mod room;
+mod sample_check;
 mod sampled;
 mod schedule;
 mod sparse;
@@ -19,4 +20,5 @@ mod view;
 
 pub use renderer::{Options, Renderer, Rendering};
 pub use room::{check_picture, check_volume};
+pub use sample_check::SampleCheck;
 pub use sampled::Sampled;

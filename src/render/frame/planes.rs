@@ -4,10 +4,13 @@ use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
+use crate::render::abi::MARK_CAST;
 use crate::render::passes::{Run, Seen};
 use crate::render::resources::DeviceLayers;
 use crate::scene::Emission;
 use crate::volume::Rescale;
+
+use super::sample_check::SampleCheck;
 
 /// Planes of a picture on the device.
 pub struct Planes {
@@ -22,8 +25,10 @@ pub struct Planes {
     pub hit_mm: Option<Buffer<f32>>,
     /// The share of each pixel's rays that met something, where it is wanted.
     pub coverage: Option<Buffer<f32>>,
-    /// 1 where a pixel was cast, else 0; `None`: all were.
+    /// The marks, which say which pixels were cast; `None`: all were.
     pub cast: Option<Buffer<u32>>,
+    /// How much adaptive anti-aliasing may differ from the whole of it.
+    pub check: Option<SampleCheck>,
     /// The rays of each round.
     pub rays_per_round: Vec<u64>,
     /// Bytes of tables that only the passes needed.
@@ -45,6 +50,7 @@ impl Planes {
             hit_mm: None,
             coverage: None,
             cast: None,
+            check: None,
             rays_per_round: Vec::new(),
             other_bytes: 0,
         })
@@ -112,7 +118,9 @@ impl Planes {
             })));
         }
         if let (Layer::Cast, Some(cast)) = (layer, &self.cast) {
-            return Ok(Some(Plane::Counts(cast.download(device)?)));
+            let was_cast = |mark: u32| u32::from(mark == MARK_CAST);
+            let marks = cast.download(device)?.into_iter();
+            return Ok(Some(Plane::Counts(marks.map(was_cast).collect())));
         }
         if layer == Layer::Kind {
             return Ok(Some(Plane::Counts(kind_of_medium(&frame.color))));

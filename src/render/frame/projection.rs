@@ -6,9 +6,10 @@ use crate::gpu::Buffer;
 use crate::render::abi::{ProjectionCast, ProjectionLoop, stored, stored_window};
 use crate::render::occupancy::Floor;
 use crate::render::passes::{
-    Filling, Run, cast_maximum, exact_projection, fill_uncast, window_value,
+    Blocks, Fill, Run, cast_maximum, exact_projection, fill_uncast, mark_varying_values,
+    window_value,
 };
-use crate::scene::{Projection, SamplingMethod, Window};
+use crate::scene::{Projection, SamplingMethod, ScreenError, Window};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -81,15 +82,35 @@ impl Schedule for ProjectionPasses<'_> {
         window_value(run, self.window, &planes.layers, &mut planes.color)
     }
 
+    /// The error is a share of the volume's range of values.
+    fn mark_unproven(
+        &self,
+        run: &mut Run,
+        blocks: Blocks,
+        error: ScreenError,
+        marks: &mut Buffer<u32>,
+    ) -> Result<()> {
+        let max_error = error.get() * self.view.volume.stored_range().width();
+        mark_varying_values(
+            run,
+            self.which,
+            self.view.inputs,
+            &self.cast,
+            blocks,
+            max_error as f32,
+            marks,
+        )
+    }
+
     /// Values are what is interpolated: their greys follow.
     fn fill(
         &self,
         run: &mut Run,
-        filling: Filling,
+        fill: Fill,
         marks: &Buffer<u32>,
         planes: &mut Planes,
     ) -> Result<()> {
-        fill_uncast(run, filling, marks, None, &mut planes.layers)?;
+        fill_uncast(run, fill, marks, None, &mut planes.layers)?;
         window_value(run, self.window, &planes.layers, &mut planes.color)
     }
 }

@@ -20,6 +20,7 @@ use crate::volume::Volume;
 use super::casting::cast_picture;
 use super::planes::Planes;
 use super::room::{check_picture, check_volume, listing_bytes};
+use super::sample_check::SampleCheck;
 use super::step::check_step;
 use super::view::View;
 
@@ -69,6 +70,8 @@ pub struct Rendering {
     /// The rays of each round: one round for a whole picture; those of a sparse one; for an anti-aliased one the
     /// rays through pixels' centres, where they are needed, and then all others.
     pub rays_per_round: Vec<u64>,
+    /// How much the picture may differ from one with as many rays in every pixel, where its anti-aliasing is adaptive.
+    pub sample_check: Option<SampleCheck>,
     /// The precomputed gradients, where the picture made use of them.
     pub gradients: Option<GradientFigures>,
     /// Bytes held on the device while rendering.
@@ -212,6 +215,7 @@ impl<'a> Renderer<'a> {
             uploaded_bytes: volume_upload.bytes + uploaded_bytes,
             render_ms: device_ms,
             rays_per_round: planes.rays_per_round.clone(),
+            sample_check: planes.check,
             gradients: (self.directions_for(scene, wanted)).map(|directions| directions.figures),
             device_bytes: held_bytes + self.occupancies.bytes() + planes.bytes(),
         })

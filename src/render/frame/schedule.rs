@@ -1,8 +1,10 @@
 //! The passes of a picture's own kind, for whichever rays a run has.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::Buffer;
-use crate::render::passes::{Filling, Run, fill_uncast};
+use crate::render::abi::Filling;
+use crate::render::passes::{Blocks, Fill, Run, fill_uncast};
+use crate::scene::ScreenError;
 
 use super::planes::Planes;
 
@@ -20,6 +22,19 @@ pub trait Schedule {
     /// As [`Run::cast`].
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()>;
 
+    /// Puts the launch at the end that marks the pixels to be cast next, because interpolation in their blocks is not proven
+    /// to keep an error; blocks' corners among them.
+    ///
+    /// # Errors
+    /// As [`Run::squares`].
+    fn mark_unproven(
+        &self,
+        run: &mut Run,
+        blocks: Blocks,
+        error: ScreenError,
+        marks: &mut Buffer<u32>,
+    ) -> Result<()>;
+
     /// Puts the launches at the end that fill the pixels that were not cast, which `marks` tells from others.
     ///
     /// # Errors
@@ -27,11 +42,30 @@ pub trait Schedule {
     fn fill(
         &self,
         run: &mut Run,
-        filling: Filling,
+        fill: Fill,
         marks: &Buffer<u32>,
         planes: &mut Planes,
     ) -> Result<()> {
         let Planes { color, layers, .. } = planes;
-        fill_uncast(run, filling, marks, Some(color), layers)
+        fill_uncast(run, fill, marks, Some(color), layers)
+    }
+
+    /// What pixels are filled with whose blocks [`Schedule::mark_unproven`] has left out.
+    fn proven_filling(&self) -> Filling {
+        Filling::Blocks
+    }
+
+    /// Puts the launches at the end that fill the planes for the rays of the run from hits at the corners of their blocks,
+    /// of a kind of picture that blocks are not filled of.
+    ///
+    /// # Errors
+    /// As [`Run::cast`]; the picture has no hits.
+    fn interpolate(
+        &self,
+        _run: &mut Run,
+        _marks: &Buffer<u32>,
+        _planes: &mut Planes,
+    ) -> Result<()> {
+        Err(Error::failed("only a surface is interpolated by its hits"))
     }
 }

@@ -1,16 +1,17 @@
 //! Sparse casting: a list of pixels to cast, and a rule that says where more are needed, until it is
 //! satisfied; what was not cast is filled.
 
-use crate::error::{Error, Result};
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::occupancy::Criterion;
-use crate::render::passes::{
-    Blocks, Differs, Filling, Run, mark_grid, mark_refill, mark_uncertain,
-};
+use crate::render::abi::Filling;
+use crate::render::passes::{Blocks, Differs, Fill, Run, mark_grid, mark_refill};
 use crate::render::resources::RaySource;
 use crate::scene::{Refill, Sparse};
 
-use super::listing::Listing;
+use super::listing::{Listed, Listing};
 use super::planes::Planes;
 use super::schedule::Schedule;
 use super::view::View;
@@ -34,30 +35,48 @@ pub fn cast_sparsely(
     let mut planes = schedule.planes(run)?;
     let mut marks = run.plane("plane of cast pixels", 0)?;
     let mut listing = Listing::new(run)?;
-    let rule = Rule { view, sparse };
+    let rule = Rule {
+        view,
+        schedule,
+        sparse,
+    };
     let (&grid, size) = run.picture()?;
-    let pixels = |listed| RaySource::Pixels { grid, size, listed };
+    let pixels = |list: &Listed, part| RaySource::Pixels {
+        grid,
+        size,
+        listed: Arc::clone(&list.pixels),
+        part,
+    };
 
     run.announcing = true;
-    let mut listed = Buffer::new(run.device, "list of pixels", 1)?;
-    listing.announce(run, &mut marks, &mut listed)?;
+    let mut list = Listed::placeholder(run)?;
+    listing.announce(run, &mut marks)?;
     rule.refill(run, &planes, &mut marks)?;
-    schedule.fill(run, rule.filling(), &marks, &mut planes)?;
-    let all = std::mem::replace(&mut run.rays, pixels(listed));
+    rule.fill(run, &marks, &mut planes)?;
+    let all = std::mem::replace(&mut run.rays, pixels(&list, list.next()));
     schedule.cast(run, &mut planes)?;
+    if rule.interpolates_hits() {
+        schedule.interpolate(run, &marks, &mut planes)?;
+    }
     run.announcing = false;
 
     rule.begin(run, &mut marks)?;
-    while let Some(listed) = listing.take(run, &mut marks)? {
-        planes.rays_per_round.push(listed.count() as u64);
-        run.rays = pixels(listed);
+    while let Some(next) = listing.take(run, &mut marks)? {
+        list = next;
+        planes.rays_per_round.push(list.next().len() as u64);
+        run.rays = pixels(&list, list.next());
         schedule.cast(run, &mut planes)?;
-        if planes.rays_per_round.len() <= rule.max_refills() {
-            rule.refill(run, &planes, &mut marks)?;
+        if planes.rays_per_round.len() > rule.max_refills() {
+            break;
         }
+        rule.refill(run, &planes, &mut marks)?;
+    }
+    if rule.interpolates_hits() && !list.in_blocks().is_empty() {
+        run.rays = pixels(&list, list.in_blocks());
+        schedule.interpolate(run, &marks, &mut planes)?;
     }
     run.rays = all;
-    schedule.fill(run, rule.filling(), &marks, &mut planes)?;
+    rule.fill(run, &marks, &mut planes)?;
     planes.cast = Some(marks);
     Ok(planes)
 }
@@ -65,25 +84,25 @@ pub fn cast_sparsely(
 /// Which pixels are cast, first and then.
 struct Rule<'a> {
     view: &'a View<'a>,
+    schedule: &'a dyn Schedule,
     sparse: Sparse,
 }
 
 impl Rule<'_> {
     /// Marks the pixels that are cast first, and all others to be filled.
     fn begin(&self, run: &mut Run, marks: &mut Buffer<u32>) -> Result<()> {
-        let spacing = self.sparse.spacing;
+        let Sparse {
+            spacing,
+            screen_error,
+            ..
+        } = self.sparse;
         match self.sparse.refill {
             Refill::None | Refill::Gradient | Refill::Flood => mark_grid(run, spacing, marks),
-            Refill::Certified => match self.view.inputs.occupancy.criterion() {
-                Criterion::Iso(iso) => {
-                    let blocks = Blocks {
-                        spacing,
-                        margin: 0.0,
-                    };
-                    mark_uncertain(run, self.view.inputs, blocks, iso.value, marks)
-                }
-                _ => Err(Error::usage("only a surface is cast with a certificate")),
-            },
+            Refill::Certified => {
+                let blocks = Blocks::up_to(spacing);
+                self.schedule
+                    .mark_unproven(run, blocks, screen_error, marks)
+            }
         }
     }
 
@@ -114,10 +133,25 @@ impl Rule<'_> {
         }
     }
 
+    /// Fills the pixels that were not cast.
+    fn fill(&self, run: &mut Run, marks: &Buffer<u32>, planes: &mut Planes) -> Result<()> {
+        let fill = Fill {
+            filling: self.filling(),
+            spacing: self.sparse.spacing,
+            with_normals: self.view.wanted.has(Layer::Normal),
+        };
+        self.schedule.fill(run, fill, marks, planes)
+    }
+
     fn filling(&self) -> Filling {
         match self.sparse.refill {
-            Refill::Certified => Filling::Empty,
-            _ => Filling::Blocks(self.sparse.spacing),
+            Refill::Certified => self.schedule.proven_filling(),
+            _ => Filling::Grid,
         }
+    }
+
+    /// Whether blocks may be left that are interpolated by the hits at their corners.
+    fn interpolates_hits(&self) -> bool {
+        self.filling() == Filling::Empty && Blocks::up_to(self.sparse.spacing).have_insides()
     }
 }

@@ -2,9 +2,13 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::render::abi::{KernelEnum, Shading, StoredIso, SurfaceCast, shading};
-use crate::render::passes::{Run, cast_surface, exact_surface, shade_surface, surface_normal};
-use crate::scene::{Phong, Refill, Refine, Rgb, SamplingMethod};
+use crate::gpu::Buffer;
+use crate::render::abi::{Filling, KernelEnum, Shading, StoredIso, SurfaceCast, shading};
+use crate::render::passes::{
+    Blocks, Run, SurfaceBlocks, cast_surface, exact_surface, interpolate_hits, mark_uncertain,
+    shade_surface, surface_normal,
+};
+use crate::scene::{Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -57,10 +61,9 @@ impl<'a> SurfacePasses<'a> {
         }
         // Pixels are compared by their normals, whether or not those are wanted.
         let scene = self.view.scene;
-        let floods = scene
+        let is_compared = scene
             .sparse
             .is_some_and(|sparse| sparse.refill == Refill::Flood);
-        let is_compared = floods || scene.anti_aliasing.is_adaptive();
         if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
             layers.push(Layer::Normal);
         }
@@ -84,15 +87,70 @@ impl Schedule for SurfacePasses<'_> {
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
-            color,
             ..
         } = planes
         else {
             return Ok(());
         };
         find(run, view.inputs, &self.cast, hit_mm, layers)?;
+        self.show(run, planes)
+    }
+
+    /// Fixed steps are not held against the surface itself: of them only emptiness is proven.
+    fn mark_unproven(
+        &self,
+        run: &mut Run,
+        blocks: Blocks,
+        error: ScreenError,
+        marks: &mut Buffer<u32>,
+    ) -> Result<()> {
+        let sampling = &self.view.scene.sampling;
+        let is_solved =
+            sampling.method == SamplingMethod::Exact && sampling.filter == Filter::Linear;
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
+        let asked = SurfaceBlocks {
+            blocks,
+            iso: self.cast.iso,
+            margin: 0.0,
+            max_error_mm: (is_solved && blocks.have_insides())
+                .then_some((error.get() * spacing_mm) as f32),
+            kinds: None,
+        };
+        mark_uncertain(run, self.view.inputs, &asked, marks)
+    }
+
+    /// Proven pieces of the surface are interpolated by their hits.
+    fn proven_filling(&self) -> Filling {
+        Filling::Empty
+    }
+
+    fn interpolate(&self, run: &mut Run, marks: &Buffer<u32>, planes: &mut Planes) -> Result<()> {
+        if let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            ..
+        } = planes
+        {
+            interpolate_hits(run, self.cast.iso, marks, hit_mm, layers)?;
+        }
+        self.show(run, planes)
+    }
+}
+
+impl SurfacePasses<'_> {
+    /// Finds the normals of the rays' hits, where they are needed, and shades them.
+    fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            color,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
         if layers.has(Layer::Normal) {
-            surface_normal(run, view.inputs, view.gradient, hit_mm, layers)?;
+            surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)?;
         }
         shade_surface(run, &self.light, self.is_shaded, layers, color)
     }

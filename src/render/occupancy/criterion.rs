@@ -4,12 +4,13 @@ use crate::error::Result;
 use crate::frame::Wanted;
 use crate::octree::Octree;
 use crate::render::abi::StoredIso;
-use crate::render::resources::Knots;
+use crate::render::resources::{Knots, unit_absorption};
 use crate::scene::{Emission, Picture, Scene};
 use crate::volume::Volume;
 
 use super::floor::Floor;
 use super::homogeneity::Limit;
+use super::opacity_ranges::OpacityRanges;
 use super::{cells, classes};
 
 /// The criterion by which nodes and cells matter. It owns its numbers: casts read them here.
@@ -79,5 +80,20 @@ impl Opacity {
             skip,
             limit: emission.homogeneity.map(limit),
         }
+    }
+
+    /// Per leaf the smallest and then the greatest red, green and blue, linear light, and absorption of the unit length, of
+    /// all values between its smallest and its greatest.
+    pub(super) fn light_of_leaves(&self, octree: &Octree) -> Vec<[f32; 4]> {
+        let ranges = OpacityRanges::new(&self.knots);
+        let leaves = octree.levels()[0].nodes();
+        let light = |&[min, max]: &[f32; 2]| {
+            let absorbing = |[r, g, b, opacity]: [f32; 4]| {
+                let absorption = unit_absorption(opacity.into());
+                [r, g, b, absorption as f32]
+            };
+            ranges.bounds(min, max).map(absorbing)
+        };
+        octree.ranges()[..leaves].iter().flat_map(light).collect()
     }
 }

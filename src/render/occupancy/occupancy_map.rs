@@ -18,17 +18,20 @@ pub struct OccupancyTables {
     with_distances: bool,
     /// The bits of cells.
     with_cells: bool,
+    /// The bounds of leaves' light.
+    with_light: bool,
 }
 
 impl OccupancyTables {
-    /// What casts with this sampling ask for, and where blocks of pixels are `certified` to show nothing their
-    /// test, which does by cells whatever rays do.
+    /// What casts with this sampling ask for, and where it is `certified` what blocks of pixels show, its test, which does
+    /// by cells whatever rays do, and of a medium by the light of leaves.
     pub fn of(sampling: &Sampling, certified: bool) -> Self {
         let with_distances = sampling.traverse == Traverse::Distance;
         Self {
             filter: sampling.filter,
             with_distances,
             with_cells: certified || with_distances && sampling.filter == Filter::Linear,
+            with_light: certified,
         }
     }
 }
@@ -42,6 +45,9 @@ pub struct Occupancy {
     pub node_class: Buffer<u8>,
     /// A bit per cell that matters, where frustums skip the others. Else a single word.
     pub cells: Buffer<u64>,
+    /// Per leaf the smallest and then the greatest red, green and blue, linear light, and absorption of the unit length;
+    /// where it is certified what blocks of pixels show of a medium.
+    pub leaf_light: Option<Buffer<[f32; 4]>>,
 }
 
 impl Occupancy {
@@ -63,6 +69,10 @@ impl Occupancy {
         } else {
             vec![0]
         };
+        let leaf_light = match &criterion {
+            Criterion::Opacity(of) if tables.with_light => Some(of.light_of_leaves(octree)),
+            _ => None,
+        };
         if tables.with_distances {
             add_distances(octree, &mut classes)?;
         }
@@ -72,6 +82,9 @@ impl Occupancy {
             has_homogeneous,
             node_class: Buffer::upload(device, "octree's classes", &classes)?,
             cells: Buffer::upload(device, "cells that matter", &cells)?,
+            leaf_light: leaf_light
+                .map(|light| Buffer::upload(device, "bounds of leaves' light", &light))
+                .transpose()?,
         })
     }
 
@@ -92,6 +105,7 @@ impl Occupancy {
 
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.node_class.bytes() + self.cells.bytes()
+        let light = self.leaf_light.as_ref().map_or(0, |light| light.bytes());
+        self.node_class.bytes() + self.cells.bytes() + light
     }
 }

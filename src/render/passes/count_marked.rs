@@ -6,7 +6,8 @@ use crate::render::abi::LISTED_SQUARE;
 
 use super::run::Run;
 
-/// Counts the pixels of each square that are marked in `cast` to be cast next.
+/// Counts the pixels of each square that `cast` marks to be cast next, and then those that it marks to be interpolated in
+/// blocks.
 pub fn count_marked(run: &mut Run, cast: &Buffer<u32>, counts: &mut Buffer<u32>) -> Result<()> {
     let args = run
         .screen_args()?

@@ -20,9 +20,16 @@ pub struct CastInputs<'a> {
 impl CastInputs<'_> {
     /// Begins the list of a cast that skips by classes and the bits of cells.
     pub fn by_cells(&self, run: &Run) -> Args {
-        Args::new()
-            .with(run.voxels)
-            .read("node_class", &self.occupancy.node_class)
+        self.add_nodes_and_cells(Args::new().with(run.voxels))
+    }
+
+    /// Begins the list of a pass that looks at classes and the bits of cells, and at no voxels.
+    pub fn nodes_and_cells(&self) -> Args {
+        self.add_nodes_and_cells(Args::new())
+    }
+
+    fn add_nodes_and_cells(&self, args: Args) -> Args {
+        args.read("node_class", &self.occupancy.node_class)
             .read("levels", &self.volume.levels)
             .read("cells", &self.occupancy.cells)
     }

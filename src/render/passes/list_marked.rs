@@ -6,8 +6,8 @@ use crate::render::abi::LISTED_SQUARE;
 
 use super::run::Run;
 
-/// Lists the pixels that are marked in `cast` to be cast next, each square's from where `begins` says, and
-/// marks them as cast.
+/// Lists the pixels that `cast` marks to be cast next and then those in blocks, each square's from where `begins` says, and
+/// marks the first as cast.
 pub fn list_marked(
     run: &mut Run,
     begins: &Buffer<u32>,

@@ -1,7 +1,7 @@
 //! `kernels/pass/mark_uncertain.cl`
 
 use crate::error::Result;
-use crate::gpu::Buffer;
+use crate::gpu::{Args, Buffer, Group};
 
 use super::inputs::CastInputs;
 use super::run::Run;
@@ -9,39 +9,124 @@ use super::run::Run;
 /// Pixels along the edge of the largest blocks that are tested, at most.
 const MAX_BLOCK: u32 = 32;
 
-/// Lanes of a work-item: the corners of a block, twice.
-const LANES: u32 = 8;
+/// Blocks of fewer pixels a side hold nothing but their corners.
+const MIN_INTERPOLATED: u32 = 3;
 
-/// The blocks of pixels that are tested for whether they show nothing.
+/// Lanes of a work-item that tests blocks: the corners of a block, twice.
+pub(super) const LANES: u32 = 8;
+
+/// The blocks of pixels that are tested for what they show.
 #[derive(Debug, Clone, Copy)]
 pub struct Blocks {
-    /// The width of the smallest, in pixels.
-    pub spacing: u32,
-    /// How far a pixel's rays pass from its centre at most along either axis, in pixels.
-    pub margin: f32,
+    /// The width of the widest that are interpolated, in pixels.
+    pub widest: u32,
+    /// The width of the smallest that are tested, in pixels.
+    smallest: u32,
+    /// How often blocks are halved from the largest that are tested to the smallest.
+    levels: u32,
 }
 
-/// Marks in `cast` the pixels whose blocks are not proven to show nothing of the surface at `iso` (stored units), to
-/// be cast next, and the others to be filled.
+impl Blocks {
+    /// Single pixels.
+    pub const PIXELS: Self = Self {
+        widest: 1,
+        smallest: 1,
+        levels: MAX_BLOCK.ilog2(),
+    };
+
+    /// Blocks so wide, and those halved while they have more pixels than their corners.
+    pub fn up_to(widest: u32) -> Self {
+        let mut smallest = widest;
+        while smallest.is_multiple_of(2) && smallest / 2 >= MIN_INTERPOLATED {
+            smallest /= 2;
+        }
+        Self {
+            widest,
+            smallest,
+            levels: (MAX_BLOCK / smallest).ilog2(),
+        }
+    }
+
+    /// Whether there are pixels to interpolate.
+    pub const fn have_insides(self) -> bool {
+        self.widest >= MIN_INTERPOLATED
+    }
+
+    /// Pixels along the edge of the square that a work-item tests.
+    pub(super) const fn square_side(self) -> u32 {
+        self.smallest << self.levels
+    }
+}
+
+impl Group for Blocks {
+    fn add_to(self, args: Args) -> Args {
+        args.value("spacing", &self.smallest)
+            .value("block_levels", &self.levels)
+            .value("widest", &self.widest)
+    }
+}
+
+/// What is asked of a surface's blocks.
+pub struct SurfaceBlocks<'a> {
+    /// The blocks.
+    pub blocks: Blocks,
+    /// The iso value, stored units.
+    pub iso: f32,
+    /// How far from its centre a pixel's rays pass at most along either axis, in pixels.
+    pub margin: f32,
+    /// How far from the surface blocks that show nothing else may be interpolated, mm; `None`: none is.
+    pub max_error_mm: Option<f32>,
+    /// What each pixel's first ray met, where it has one: of single pixels those with a hit are not tested.
+    pub kinds: Option<&'a Buffer<u32>>,
+}
+
+/// Marks in `cast` the pixels to be cast next whose blocks are not proven to show nothing of the surface, or one smooth
+/// piece of it alone.
 pub fn mark_uncertain(
     run: &mut Run,
     inputs: CastInputs,
-    blocks: Blocks,
-    iso: f32,
+    asked: &SurfaceBlocks,
     cast: &mut Buffer<u32>,
 ) -> Result<()> {
-    let Blocks { spacing, margin } = blocks;
-    let levels = (MAX_BLOCK / spacing).ilog2();
     let (grid, _) = run.picture()?;
     let args = inputs
         .by_cells(run)
+        .with(inputs.clip)
         .value("volume", &inputs.volume.grid)
         .value("rays", grid)
-        .value("spacing", &spacing)
-        .value("block_levels", &levels)
-        .value("margin", &margin)
-        .value("iso", &iso)
+        .with(asked.blocks)
+        .value("margin", &asked.margin)
+        .value("max_error_mm", &asked.max_error_mm.unwrap_or_default())
+        .value("iso", &asked.iso)
+        .read_some("kind", asked.kinds)
         .write("cast", cast);
-    let defines = run.variant.defines().with("LANES", LANES);
-    run.squares("mark_uncertain", defines, args, spacing << levels)
+    let defines = run
+        .variant
+        .defines()
+        .with("LANES", LANES)
+        .with("SURFACES", u32::from(asked.max_error_mm.is_some()))
+        .with("HITS_KNOWN", u32::from(asked.kinds.is_some()));
+    let side = asked.blocks.square_side();
+    run.squares("mark_uncertain", defines, args, side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Blocks;
+
+    #[test]
+    fn blocks_are_halved_while_they_have_insides() {
+        let of = |widest| {
+            let Blocks {
+                smallest, levels, ..
+            } = Blocks::up_to(widest);
+            (smallest, levels)
+        };
+        assert_eq!(of(8), (4, 3));
+        assert_eq!(of(4), (4, 3));
+        assert_eq!(of(3), (3, 3));
+        assert_eq!(of(2), (2, 4));
+        assert_eq!(Blocks::PIXELS.square_side(), 32);
+        assert!(Blocks::up_to(3).have_insides() && !Blocks::up_to(2).have_insides());
+    }
 }

@@ -48,8 +48,10 @@ pub enum RaySource {
         grid: RayGrid,
         /// The picture's size.
         size: ImageSize,
-        /// The pixels, row by row.
-        listed: Buffer<u32>,
+        /// Pixels, counted row by row.
+        listed: Arc<Buffer<u32>>,
+        /// The part of the list that has rays.
+        part: Range<usize>,
     },
     /// Several rays in each of some pixels; planes have an entry for each ray.
     Samples {
@@ -116,7 +118,8 @@ impl RaySource {
         Ok(Self::Pixels {
             grid: ray_grid(camera, size, volume),
             size,
-            listed: Buffer::upload(device, "list of pixels", &listed)?,
+            part: 0..listed.len(),
+            listed: Arc::new(Buffer::upload(device, "list of pixels", &listed)?),
         })
     }
 
@@ -157,7 +160,7 @@ impl RaySource {
     /// How many rays there are.
     pub fn count(&self) -> usize {
         match self {
-            Self::Pixels { listed, .. } => listed.count(),
+            Self::Pixels { part, .. } => part.len(),
             _ => self.places(),
         }
     }
@@ -200,10 +203,13 @@ impl Group for &RaySource {
     fn add_to(self, args: Args) -> Args {
         match self {
             RaySource::Camera { grid, .. } => args.value("rays", grid),
-            RaySource::Pixels { grid, listed, .. } => args
+            RaySource::Pixels {
+                grid, listed, part, ..
+            } => args
                 .value("rays", grid)
                 .read("listed", listed)
-                .value("listed_count", &(listed.count() as u32)),
+                .value("first_listed", &(part.start as u32))
+                .value("listed_count", &(part.len() as u32)),
             RaySource::Samples {
                 grid,
                 listed,

@@ -1,0 +1,130 @@
+// Marks the pixels of a medium's picture that must be cast: all but the corners of blocks whose light and opacity are proven
+// to differ by no more than `max_error` in any channel, by what lies in the frustum around all their rays. Large blocks are
+// tested first; one that is not proven is parted into four, down to blocks of `spacing` pixels. Between the corners of
+// blocks, or of their parts of `widest` pixels, colours are interpolated.
+//
+// From the back to the front, each layer of leaves lets through a share of what is behind it and adds light of its own: what
+// leaves it is a mean of the two, weighted with its opacity. Of both, and of the opacity, the smallest and the greatest are
+// known: by the leaves' absorption and colours, and by how far rays go in them.
+//
+// A work-item tests a square of `spacing` << `block_levels` pixels a side. Reads per octree node its CLASS_*, per leaf the
+// bounds of its light (`leaf_light`: first the smallest, then the greatest red, green, blue, linear light, and absorption of
+// the unit length), and the clip planes. Writes cast.
+#include "lib/ray/block_walk.clh"
+#include "lib/ray/clip.clh"
+#include "lib/skip/packet.clh"
+
+#if LANES != 8
+#error "the rays at a block's corners stand in lanes, two times four: LANES is 8"
+#endif
+
+// Red, green, blue, premultiplied linear light, and opacity: the smallest and the greatest.
+typedef struct {
+    float4 low, high;
+} LightRange;
+
+// The bounds of all leaves that a frustum touches in a layer.
+static inline LightRange layer_light(const Packet *packet, const global float4 *leaf_light, int layer)
+{
+    Ints tested = INTS(0);
+    LayerLeaves leaves = layer_leaves(packet, layer, &tested);
+    LightRange light = {(float4)(INFINITY), (float4)(-INFINITY)};
+    uint first = leaves.first;
+    for (uint v = 0u; v < leaves.across_v; v++) {
+        uint leaf = first;
+        for (uint u = 0u; u < leaves.across_u; u++) {
+            float4 low = leaf_light[2u * leaf];
+            float4 high = leaf_light[2u * leaf + 1u];
+            // What absorbs nothing shows no colour.
+            bool shows = high.w > 0.0f;
+            light.low = shows ? fmin(light.low, low) : (float4)(light.low.xyz, 0.0f);
+            light.high = shows ? fmax(light.high, high) : light.high;
+            leaf += packet->u.leaf;
+        }
+        first += packet->v.leaf;
+    }
+    return light;
+}
+
+static inline float4 mixed(float4 behind, float4 light, float opacity) { return behind + (light - behind) * opacity; }
+
+// What a layer makes of the light from behind it: `of` its colours, with 1 for what opacity grows towards, of opacities from
+// the first to the second.
+static inline void pass_layer(LightRange *range, LightRange of, float2 opacity)
+{
+    of.low.w = of.high.w = 1.0f;
+    range->low = fmin(mixed(range->low, of.low, opacity.x), mixed(range->low, of.low, opacity.y));
+    range->high = fmax(mixed(range->high, of.high, opacity.x), mixed(range->high, of.high, opacity.y));
+}
+
+// What shading makes of a colour, at least and at most: it times x, and it times y plus z.
+static inline LightRange reflected(LightRange light, float4 reflects)
+{
+    light.low.xyz *= reflects.x;
+    light.high.xyz = light.high.xyz * reflects.y + reflects.z;
+    return light;
+}
+
+// The light of all rays of a frustum; `per_slice`: how far they go in a slice of cells, the shortest and the longest, in unit
+// lengths.
+static inline LightRange frustum_light(Packet packet, const SkipGrid *grid, const global float4 *leaf_light, float2 per_slice, float4 reflects,
+                                       bool is_cut)
+{
+    LightRange range = {(float4)(0.0f), (float4)(0.0f)};
+    Ints tested = INTS(0);
+    packet_turn(&packet);
+    while (packet_has_slices(&packet)) {
+        int layer = packet.slice / (int)LEAF;
+        int layers;
+        uint class = layer_class(&packet, grid, layer, &layers, &tested);
+        if (class != CLASS_BELOW) {
+            layers = 1;
+            LightRange light = layer_light(&packet, leaf_light, layer);
+            int from = layer * (int)LEAF;
+            int to = min(from + (int)LEAF, packet.main_cells);
+            bool whole = !is_cut && is_inside(&packet, from, to);
+            float2 length = (float)(to - from) * per_slice;
+            float2 depth = (float2)(whole ? length.x * light.low.w : 0.0f, length.y * light.high.w);
+            if (depth.y > 0.0f)
+                pass_layer(&range, reflected(light, reflects), 1.0f - exp(-depth));
+        }
+        packet.slice = layers_end(&packet, layer, layers);
+    }
+    return range;
+}
+
+kernel void mark_varying_light(SKIP_BY_CLASS, const global float4 *leaf_light, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels,
+                               uint widest, float max_error, float unit_length_mm, float4 reflects, global uint *cast)
+{
+    SkipGrid grid = skip_by_class(node_class, levels, cells);
+    ClipPlanes clip = CLIP_GIVEN;
+    BlockWalk walk = block_walk(spacing, block_levels);
+    Block block;
+    while (block_next(&walk, rays, &block)) {
+        Packet packet;
+        PacketLines lines;
+        bool even = false;
+        if (frustum_start(&packet, corner_rays(rays, block, 0.0f), levels, volume, &lines)) {
+            if (is_outside(&packet)) {
+                mark_block(rays, block, MARK_FILLED, cast);
+                block_pass(&walk);
+                continue;
+            }
+            Floats length = 1.0f / (fabs(lines.main.dir) * unit_length_mm);
+            float2 per_slice = (float2)(MIN_LANE(length), MAX_LANE(length));
+            bool is_cut = clip.count > 0u || begins_inside(&packet, &lines);
+            LightRange light = frustum_light(packet, &grid, leaf_light, per_slice, reflects, is_cut);
+            float4 differ = light.high - light.low;
+            even = fmax(fmax(differ.x, differ.y), fmax(differ.z, differ.w)) <= max_error;
+        }
+        if (!even && walk.level > 0) {
+            walk.level--;
+            continue;
+        }
+        if (even)
+            mark_interpolated(rays, block, (int)widest, 0, cast);
+        else
+            mark_block(rays, block, MARK_NEXT, cast);
+        block_pass(&walk);
+    }
+}

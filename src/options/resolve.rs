@@ -156,10 +156,16 @@ mod tests {
     use crate::extent::Range;
     use crate::options::flag_names;
     use crate::options::rules::{Group, rule};
+    use crate::subject::Sphere;
 
-    const SUBJECT: Subject = Subject {
+    const SPHERE: Sphere = Sphere {
         center_world: DVec3::new(1.0, 2.0, 3.0),
         radius_mm: 10.0,
+    };
+
+    const SUBJECT: Subject = Subject {
+        sphere: SPHERE,
+        content: SPHERE,
         spacing_mm: DVec3::ONE,
         range: Range {
             min: -100.0,

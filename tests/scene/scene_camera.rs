@@ -1,16 +1,21 @@
 //! Camera options against cameras worked out by hand.
 
-use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens};
+use angioray::{Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
 
 /// A ball of radius 10 mm about (1, 2, 3).
-const SUBJECT: Subject = Subject {
+const SPHERE: Sphere = Sphere {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+};
+
+const SUBJECT: Subject = Subject {
+    sphere: SPHERE,
+    content: SPHERE,
     spacing_mm: DVec3::ONE,
     range: Range { min: 0.0, max: 1.0 },
     robust_range: Range { min: 0.0, max: 1.0 },
@@ -38,7 +43,7 @@ fn resolved(line: &[&str]) -> angioray::options::Resolved {
 /// Whether the eye lies in this direction from the volume's centre, with this up.
 fn eye_is(line: &[&str], toward: [f64; 3], up: [f64; 3]) -> bool {
     let camera = camera(line);
-    let toward_eye = (camera.eye_world() - SUBJECT.center_world).normalize();
+    let toward_eye = (camera.eye_world() - SPHERE.center_world).normalize();
     toward_eye.distance(toward.into()) < 1e-9 && camera.up().distance(up.into()) < 1e-9
 }
 
@@ -107,13 +112,13 @@ fn over_the_pole_nothing_breaks() {
 fn extent(line: &[&str]) -> f64 {
     let scene = resolved(line).scene;
     let smaller = scene.size.aspect().min(1.0);
-    let distance = scene.camera.eye_world().distance(SUBJECT.center_world);
+    let distance = scene.camera.eye_world().distance(SPHERE.center_world);
     match scene.camera.lens() {
         Lens::Perspective { fov_deg } => {
-            let silhouette = (SUBJECT.radius_mm / distance).asin().tan();
+            let silhouette = (SPHERE.radius_mm / distance).asin().tan();
             silhouette / ((fov_deg.to_radians() / 2.0).tan() * smaller)
         }
-        Lens::Orthographic { height_mm } => SUBJECT.radius_mm / (height_mm / 2.0 * smaller),
+        Lens::Orthographic { height_mm } => SPHERE.radius_mm / (height_mm / 2.0 * smaller),
     }
 }
 
@@ -248,18 +253,18 @@ fn an_orthographic_eye_plane_clears_the_volume_about_any_target() {
     let clearance = |target: DVec3| {
         let text = format!("{},{},{}", target.x, target.y, target.z);
         let c = camera(&["--ortho", "20", "--target", &text]);
-        (SUBJECT.center_world - c.eye_world()).dot(c.forward()) - SUBJECT.radius_mm
+        (SPHERE.center_world - c.eye_world()).dot(c.forward()) - SPHERE.radius_mm
     };
     for behind_mm in [0.0, 50.0, 1e6] {
-        let target = SUBJECT.center_world + DVec3::Y * behind_mm;
+        let target = SPHERE.center_world + DVec3::Y * behind_mm;
         assert!(clearance(target) > 0.0, "{behind_mm}");
-        let before = SUBJECT.center_world - DVec3::Y * behind_mm;
+        let before = SPHERE.center_world - DVec3::Y * behind_mm;
         assert!(clearance(before) > 0.0, "{behind_mm}");
     }
     // The control: an eye that is given may lie inside.
     let inside = camera(&["--ortho", "20", "--eye", "1,1,3"]);
-    let depth = (SUBJECT.center_world - inside.eye_world()).dot(inside.forward());
-    assert!(depth < SUBJECT.radius_mm);
+    let depth = (SPHERE.center_world - inside.eye_world()).dot(inside.forward());
+    assert!(depth < SPHERE.radius_mm);
 }
 
 #[test]

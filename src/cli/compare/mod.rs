@@ -112,8 +112,8 @@ impl CompareArguments {
             .collect::<Result<Vec<Peer>>>()?;
 
         let bars = Bars::new();
-        let loaded = source.load(Some(device.info()), &bars)?;
-        let modes = request.mode_settings(&loaded.measured(options), &loaded)?;
+        let mut loaded = source.load(Some(device.info()), &bars)?;
+        let modes = request.mode_settings(options, &mut loaded)?;
         load_into(&mut peers, &loaded, &bars)?;
         let began = Instant::now();
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
@@ -192,11 +192,19 @@ impl Request {
         checks::inputs(folder, source, options, self.scene_file.path(), configs)
     }
 
-    /// The modes in their settings, about which the user is notified.
-    fn mode_settings(&self, options: &SceneOptions, loaded: &Loaded) -> Result<Vec<ModeSettings>> {
+    /// The modes in their settings, all seen from one place, about which the user is notified.
+    fn mode_settings(
+        &self,
+        options: SceneOptions,
+        loaded: &mut Loaded,
+    ) -> Result<Vec<ModeSettings>> {
+        let options = loaded.measured(options);
+        let modes = self.modes.iter();
+        let seen = modes.map(|&mode| ModeSettings::seen(mode, &options));
+        loaded.frame(&seen.collect::<Result<Vec<_>>>()?)?;
         let modes = self.modes.iter();
         let mut modes = modes
-            .map(|&mode| mode_settings(mode, options, self.configs.as_ref(), loaded))
+            .map(|&mode| mode_settings(mode, &options, self.configs.as_ref(), loaded))
             .collect::<Result<Vec<ModeSettings>>>()?;
         if let Some(bound) = self.bound {
             add_bound(&mut modes, bound);

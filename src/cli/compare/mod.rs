@@ -35,7 +35,8 @@ use reference_cache::reference_cache;
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
-An option applies to the modes that it belongs to: --iso and --tf can be given together.
+An option applies to the modes that it belongs to: --iso and --tf can be given together. All modes are seen
+from one place: with --fit content, what any of them shows fits their pictures.
 
 The options --sampling, --step, --filter and the like make one more setting, 'as given'; what
 --max-error chooses is another. All are compared with the reference of the scene, in linear

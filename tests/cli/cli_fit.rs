@@ -188,7 +188,8 @@ fn the_modes_of_a_comparison_are_seen_from_one_place() {
     let mut voxels = std::fs::read(place.path("ball.raw")).unwrap();
     voxels[(3 * 48 + 40) * 64 + 5] = 80;
     std::fs::write(place.path("ball.raw"), voxels).unwrap();
-    let flags = "--iso 100 --window 50,200";
+    place.write("one.toml", "[[setting]]\nname = 'coarse'\nstep = 2\n");
+    let flags = "--configs one.toml --iso 100 --window 50,200";
     place.done(&format!(
         "compare {BALL} -o out --modes iso,mip --size 16 --repeats 1 --cache off {flags} {device}"
     ));

@@ -10,7 +10,7 @@ program=target/release/angioray
 mkdir -p out
 
 "$program" phantom vessels --size 256 --seed 7 -o out/vessels.nrrd
-view=(--size 768x768 --azimuth 30 --elevation 15 --zoom 1.4)
+view=(--size 768x768 --azimuth 30 --elevation 15)
 "$program" render out/vessels.nrrd -o out/vessels_iso.png --mode iso "${view[@]}"
 "$program" render out/vessels.nrrd -o out/vessels_mip.png --mode mip "${view[@]}"
 "$program" render out/vessels.nrrd -o out/vessels_dvr.png --mode dvr --tf 3dra --shading phong "${view[@]}"

@@ -17,7 +17,7 @@ cd "$work"
 "$program" phantom vessels -o vessels.nrrd --size 128 --seed 7
 cp "$docs/settings.toml" .
 "$program" compare vessels.nrrd -o report --modes iso,mip,dvr --configs settings.toml --size 128x128 \
-    --azimuth 30 --elevation 15 --zoom 1.3 --repeats 9 --cache off
+    --azimuth 30 --elevation 15 --fit volume --zoom 1.3 --repeats 9 --cache off
 cp report/report.html "$docs/report.html"
 
 # A page as a picture: its file, the picture's, the window's width and height.

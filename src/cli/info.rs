@@ -157,7 +157,7 @@ impl Info {
         Self {
             volume: VolumeStats::of(&source.path, volume, loaded.non_finite),
             size_mm,
-            center_mm: loaded.subject.center_world.to_array(),
+            center_mm: loaded.subject.sphere.center_world.to_array(),
             bytes,
             otsu: loaded.subject.otsu,
             suggested_iso: loaded.subject.suggested_iso,

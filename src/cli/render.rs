@@ -47,8 +47,9 @@ impl RenderArguments {
         files.check(&job.inputs)?;
         let backend = Backend::open(&job.device)?;
         let bars = Bars::new();
-        let loaded = job.source.load(backend.device_info(), &bars)?;
+        let mut loaded = job.source.load(backend.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
+        loaded.frame(std::slice::from_ref(&job.options))?;
         draw(Drawing {
             command: "render",
             job: &job,

@@ -8,7 +8,7 @@ use crate::gpu::DeviceInfo;
 use crate::octree::Leaf;
 use crate::options::{FilePath, NonFiniteRule, SceneOptions, SpacingMm, VolumeOptions};
 use crate::progress::Progress;
-use crate::render::check_volume;
+use crate::render::{check_volume, content_sphere};
 use crate::subject::Subject;
 use crate::volume::{
     self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, percentiles,
@@ -123,6 +123,18 @@ impl Loaded {
     /// The hash of the volume's content, in hexadecimal.
     pub fn content(&self) -> String {
         self.volume.content_hash().to_hex().to_string()
+    }
+
+    /// Measures what pictures show of the volume, where their cameras depend on it: one sphere for all that
+    /// are made of these options.
+    pub fn frame(&mut self, pictures: &[SceneOptions]) -> Result<()> {
+        let framed = pictures.iter().filter(|options| options.fits_content());
+        let shown = framed.map(|options| options.shown(&self.subject));
+        let shown = shown.collect::<Result<Vec<_>>>()?;
+        if !shown.is_empty() {
+            self.subject.content = content_sphere(&self.volume, &shown)?;
+        }
+        Ok(())
     }
 
     /// The options, each order statistic of the voxels replaced by its value, which is printed.

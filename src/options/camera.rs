@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::carm::CArm;
+use super::enum_names::Fit;
 use super::group::group;
 use super::quantities::{AngleDeg, Zoom};
 use super::text_form::text_form;
@@ -10,7 +11,7 @@ use super::triple::Triple;
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::scene::{Camera, FovDeg, HeightMm, Lens, Orientation, View, fit_distance_mm};
-use crate::subject::Subject;
+use crate::subject::{Sphere, Subject};
 
 text_form!(FovDeg, HeightMm, View);
 
@@ -44,6 +45,14 @@ group! {
         #[arg(long, value_name = "HEIGHT_MM", allow_hyphen_values = true)]
         ortho: HeightMm,
 
+        /// What fits the picture at zoom 1: volume, the volume's bounding sphere; or content, that of the cells
+        /// that can show something: which the surface passes or a cap closes, which absorb (dvr), whose
+        /// greatest value is above the window's lower end (mip, lmip); in minip and mean, and where nothing
+        /// shows, the volume's. Clip planes do not change it. The eye is as far from the target as the
+        /// sphere's radius needs; with --ortho only the target depends on it, with --eye nothing (refused)
+        #[arg(long, value_name = "volume|content")]
+        fit: Fit,
+
         /// The side of the patient on which the eye is: anterior, posterior, left, right, superior or
         /// inferior
         #[arg(long, value_name = "NAME")]
@@ -62,8 +71,7 @@ group! {
         #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
         roll: AngleDeg,
 
-        /// Magnify the picture by narrowing the lens; without --eye the whole volume's bounding sphere
-        /// fits at 1
+        /// Magnify the picture by narrowing the lens; without --eye what --fit names fits at 1
         #[arg(long, value_name = "F", allow_hyphen_values = true)]
         zoom: Zoom,
 
@@ -105,9 +113,10 @@ impl CameraOptions {
     pub(super) fn resolve(self, subject: &Subject) -> Result<(ImageSize, Camera, Self)> {
         self.check()?;
         let size = self.size.unwrap_or(ImageSize::DEFAULT);
-        let target = self.target.map_or(subject.center_world, |Triple(p)| p);
-        let (eye, up) = self.placed(target, subject, size);
-        Self::check_distance(eye, subject)?;
+        let fitting = self.fitting(subject);
+        let target = self.target.map_or(fitting.center_world, |Triple(p)| p);
+        let (eye, up) = self.placed(target, fitting, subject.sphere, size);
+        Self::check_distance(eye, subject.sphere)?;
         let (lens, of_lens) = self.lens()?;
         let camera = Camera::look_at(eye, target, up, lens)?;
         let options = Self {
@@ -120,8 +129,23 @@ impl CameraOptions {
         Ok((size, camera, options))
     }
 
-    /// The eye and its up: those given, or of a view, turned.
-    fn placed(&self, target: DVec3, subject: &Subject, size: ImageSize) -> (DVec3, DVec3) {
+    /// The sphere that fits the picture at zoom 1 where no eye is given.
+    fn fitting(&self, subject: &Subject) -> Sphere {
+        match self.fit.unwrap_or_default() {
+            Fit::Volume => subject.sphere,
+            Fit::Content => subject.content,
+        }
+    }
+
+    /// The eye and its up: those given, or of a view, turned, so far away that a sphere of the radius of
+    /// `fitting` about the target fits.
+    fn placed(
+        &self,
+        target: DVec3,
+        fitting: Sphere,
+        volume: Sphere,
+        size: ImageSize,
+    ) -> (DVec3, DVec3) {
         match self.eye {
             Some(Triple(eye)) => {
                 let up = match self.up {
@@ -139,10 +163,10 @@ impl CameraOptions {
                 });
                 let distance_mm = match self.ortho {
                     // The eye plane clears the volume, wherever the target is.
-                    Some(_) => 2.0 * subject.radius_mm + target.distance(subject.center_world),
+                    Some(_) => 2.0 * volume.radius_mm + target.distance(volume.center_world),
                     None => {
                         let fov_deg = self.fov.unwrap_or_default().get();
-                        fit_distance_mm(subject.radius_mm, fov_deg, size)
+                        fit_distance_mm(fitting.radius_mm, fov_deg, size)
                     }
                 };
                 let eye = target + orientation.toward_eye * distance_mm;
@@ -152,13 +176,13 @@ impl CameraOptions {
     }
 
     /// Checks that an eye is so near that its rays differ.
-    fn check_distance(eye: DVec3, subject: &Subject) -> Result<()> {
-        let far_mm = Self::FAR_RADII * subject.radius_mm;
-        let distance_mm = eye.distance(subject.center_world);
+    fn check_distance(eye: DVec3, volume: Sphere) -> Result<()> {
+        let far_mm = Self::FAR_RADII * volume.radius_mm;
+        let distance_mm = eye.distance(volume.center_world);
         if distance_mm > far_mm {
             return Err(Error::usage(format!(
                 "the eye is {distance_mm:.1e} mm away from a volume of {:.1e} mm radius: it must be within {far_mm:.1e} mm",
-                subject.radius_mm
+                volume.radius_mm
             ))
             .hint("'ortho' looks from infinitely far away"));
         }

@@ -29,6 +29,11 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: TURNED,
     },
     Contradiction {
+        is_in: |all| all.camera.eye.is_some() && all.camera.fit.is_some(),
+        sentence: "'eye' and 'fit' cannot be combined: both say how far away the eye is",
+        hint: "leave one of them out; 'zoom' magnifies what an eye sees",
+    },
+    Contradiction {
         is_in: |all| {
             let from_elsewhere = all.camera.view.is_some_and(|view| view != View::Anterior);
             all.camera.carm.is_some() && from_elsewhere
@@ -164,7 +169,7 @@ pub(super) const REPLACED: &[Replaced] = &[
     // An eye replaces a view and a view an eye, each with what turns it.
     Replaced {
         by: |flags, _| flags.camera.eye.is_some(),
-        options: &["view", "carm", "azimuth", "elevation", "roll"],
+        options: &["fit", "view", "carm", "azimuth", "elevation", "roll"],
     },
     Replaced {
         by: |flags, file| {
@@ -172,6 +177,11 @@ pub(super) const REPLACED: &[Replaced] = &[
             file.camera.eye.is_some() && by_view
         },
         options: &["eye", "up", "view", "carm", "azimuth", "elevation", "roll"],
+    },
+    // What is to fit the picture replaces an eye and what that looks at, which may have been found for another.
+    Replaced {
+        by: |flags, file| flags.camera.fit.is_some() && file.camera.eye.is_some(),
+        options: &["eye", "target", "up", "azimuth", "elevation", "roll"],
     },
     Replaced {
         by: |flags, _| flags.camera.carm.is_some(),

@@ -76,4 +76,15 @@ pub enum NonFiniteRule {
 }
 enum_names!(NonFiniteRule, "a rule for NaN and infinite voxels": Replace = "replace", Refuse = "refuse");
 
-text_form!(Shading, GradientMethod, Switch, NonFiniteRule);
+/// What fits the picture where no eye is given (`--fit`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fit {
+    /// The volume's bounding sphere.
+    Volume,
+    /// The bounding sphere of the cells that can show something.
+    #[default]
+    Content,
+}
+enum_names!(Fit, "what fits the picture": Volume = "volume", Content = "content");
+
+text_form!(Shading, GradientMethod, Switch, NonFiniteRule, Fit);

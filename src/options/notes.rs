@@ -9,7 +9,7 @@ use super::threshold::Threshold;
 use crate::extent::Range;
 use crate::number_text::{concise, concise_within};
 use crate::scene::{ClipPlane, Mode, Picture, SamplingMethod, Scene, TransferFile};
-use crate::subject::Subject;
+use crate::subject::{Sphere, Subject};
 
 impl SceneOptions {
     /// Sentences on the defaults and computed values in a scene that these options made, `complete` being
@@ -140,7 +140,11 @@ pub(super) fn replaced(written: &PictureOptions, by: &PictureOptions, range: Ran
 /// A sentence on each plane that alone cuts all of the volume away.
 fn clip_notes(planes: &[ClipPlane], subject: &Subject) -> Vec<String> {
     let cuts_all = |plane: &&ClipPlane| {
-        let inmost = subject.center_world - plane.outward_world() * subject.radius_mm;
+        let Sphere {
+            center_world,
+            radius_mm,
+        } = subject.sphere;
+        let inmost = center_world - plane.outward_world() * radius_mm;
         let space = glam::DAffine3::from_translation(inmost);
         plane.in_space(space).1 < 0.0
     };

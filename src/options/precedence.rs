@@ -60,6 +60,7 @@ mod tests {
             ("fov = 40", "ortho = 20"),
             (eye, "view = 'left'"),
             (eye, carm),
+            (eye, "fit = 'volume'"),
             (carm, "view = 'left'"),
             (carm, "azimuth = 10"),
             (carm, "elevation = 10"),

@@ -156,10 +156,17 @@ mod tests {
     use crate::extent::Range;
     use crate::options::flag_names;
     use crate::options::rules::{Group, rule};
+    use crate::subject::Sphere;
 
     const SUBJECT: Subject = Subject {
-        center_world: DVec3::new(1.0, 2.0, 3.0),
-        radius_mm: 10.0,
+        sphere: Sphere {
+            center_world: DVec3::new(1.0, 2.0, 3.0),
+            radius_mm: 10.0,
+        },
+        content: Sphere {
+            center_world: DVec3::new(-2.0, 2.5, 4.0),
+            radius_mm: 3.0,
+        },
         spacing_mm: DVec3::ONE,
         range: Range {
             min: -100.0,

@@ -8,7 +8,7 @@
 
 use std::fmt::Display;
 
-use super::enum_names::{GradientMethod, NonFiniteRule, Shading, Switch};
+use super::enum_names::{Fit, GradientMethod, NonFiniteRule, Shading, Switch};
 use super::quantities::{AngleDeg, GradientScale, SigmaMm, SigmaVoxels, Zoom};
 use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
 use crate::extent::ImageSize;
@@ -232,12 +232,14 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| ImageSize::DEFAULT.to_string()),
     scene("eye", What, &[]),
     scene("target", What, &[])
-        .default(|| "the volume's centre".to_owned()),
+        .default(|| "the centre of what --fit names".to_owned()),
     scene("up", What, &[Need::Eye])
         .default(|| "0,0,1; when looking along z that of the views superior and inferior".to_owned()),
     scene("fov", What, &[])
         .default(text::<FovDeg>),
     scene("ortho", What, &[]),
+    scene("fit", What, &[])
+        .default(text::<Fit>),
     scene("view", What, &[])
         .default(text::<View>),
     scene("azimuth", What, &[])

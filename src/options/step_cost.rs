@@ -16,7 +16,7 @@ pub(super) const MANY_SAMPLES: f64 = 16_384.0;
 
 /// The greatest number of samples that a ray takes at a step.
 fn samples_along(subject: &Subject, step: StepVoxels) -> f64 {
-    2.0 * subject.radius_mm / (step.get() * subject.spacing_mm.min_element())
+    2.0 * subject.sphere.radius_mm / (step.get() * subject.spacing_mm.min_element())
 }
 
 impl SceneOptions {

@@ -45,16 +45,17 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Constructs the camera of a named view that shows a whole volume, as the command line places it
-    /// where nothing else is given.
+    /// Constructs the camera of a named view in whose picture the subject's content fits, as the command line
+    /// places it where nothing else is given. The content is the whole volume unless it was measured
+    /// ([`Subject::content`]).
     ///
     /// # Errors
     /// Usage: a volume without extent.
     pub fn of_view(view: View, subject: &Subject, size: ImageSize) -> Result<Self> {
         let orientation = Orientation::of(view);
         let fov_deg = FovDeg::default().get();
-        let target = subject.center_world;
-        let distance_mm = fit_distance_mm(subject.radius_mm, fov_deg, size);
+        let target = subject.content.center_world;
+        let distance_mm = fit_distance_mm(subject.content.radius_mm, fov_deg, size);
         let eye = target + orientation.toward_eye * distance_mm;
         Self::look_at(eye, target, orientation.up, Lens::Perspective { fov_deg })
     }

@@ -80,8 +80,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Constructs the scene of a mode as the command line makes it where nothing else is given: the whole
-    /// volume from the front.
+    /// Constructs the scene of a mode as the command line makes it where nothing else is given: the
+    /// subject's content from the front.
     ///
     /// # Errors
     /// As [`Camera::of_view`] and [`Picture::of_mode`].

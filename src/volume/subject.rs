@@ -1,13 +1,14 @@
 //! A volume's [`Subject`].
 
 use super::{Histogram, Volume, suggested_iso};
-use crate::subject::Subject;
+use crate::subject::{Sphere, Subject};
 
 /// Bins of the histogram from which iso values are suggested.
 const BINS: usize = 1024;
 
 impl Subject {
-    /// Measures a volume: its bounds, its range, and the values that its histogram suggests.
+    /// Measures a volume: its bounds, its range, and the values that its histogram suggests. Its content is
+    /// all of it, until a picture is known.
     pub fn of(volume: &Volume) -> Self {
         Self::with_histogram(volume, &Self::histogram(volume))
     }
@@ -19,10 +20,10 @@ impl Subject {
 
     /// Measures a volume of which [`Subject::histogram`] is known.
     pub fn with_histogram(volume: &Volume, histogram: &Histogram) -> Self {
-        let (center_world, radius_mm) = volume.bounding_sphere();
+        let sphere = Sphere::from(volume.bounding_sphere());
         Self {
-            center_world,
-            radius_mm,
+            sphere,
+            content: sphere,
             spacing_mm: volume.geometry().spacing_mm(),
             range: volume.range(),
             robust_range: histogram.range,

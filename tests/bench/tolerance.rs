@@ -4,7 +4,6 @@
 use crate::cli_place;
 use crate::common;
 
-use angioray::Subject;
 use angioray::extent::Dims;
 use angioray::frame::error::{color_error, depth_error, value_error};
 use angioray::frame::{Frame, Layer, Wanted, read_metadata};
@@ -16,6 +15,7 @@ use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::Mode;
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
+use angioray::{Sphere, Subject};
 use cli_place::{Place, stderr};
 
 const WANTED: Wanted = Wanted::DISPLAY.with([Layer::Depth, Layer::Value]);
@@ -26,11 +26,11 @@ fn vessels() -> Volume {
 }
 
 fn subject(volume: &Volume) -> Subject {
-    let (center_world, radius_mm) = volume.bounding_sphere();
+    let sphere = Sphere::from(volume.bounding_sphere());
     let range = volume.range();
     Subject {
-        center_world,
-        radius_mm,
+        sphere,
+        content: sphere,
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

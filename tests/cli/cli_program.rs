@@ -37,7 +37,7 @@ fn help_and_version_go_to_stdout() {
 fn a_picture_and_its_statistics() {
     let place = Place::with_ball();
     let output = place.run(&format!(
-        "render ball.nrrd -o ball.exr --aov all --iso 50% --stats ball.json {REFERENCE}"
+        "render ball.nrrd -o ball.exr --aov all --iso 50% --fit volume --stats ball.json {REFERENCE}"
     ));
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(output.stdout.is_empty());
@@ -76,7 +76,7 @@ fn a_picture_and_its_statistics() {
     }
     // The control: with a quarter of the view, about sixteen times fewer pixels.
     place.done(&format!(
-        "render ball.nrrd -o far.png --iso 50% --zoom 0.25 --stats far.json {REFERENCE}"
+        "render ball.nrrd -o far.png --iso 50% --fit volume --zoom 0.25 --stats far.json {REFERENCE}"
     ));
     assert!(place.json("far.json")["counts"]["hits"].as_u64().unwrap() < hits / 4);
 }

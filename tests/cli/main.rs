@@ -7,6 +7,7 @@ mod common;
 
 mod cli_device;
 mod cli_files;
+mod cli_fit;
 mod cli_flags;
 mod cli_hardcase;
 mod cli_info;

@@ -1,15 +1,20 @@
 //! An orbit: where its cameras are, and that it closes.
 
-use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
 use angioray::scene::{FrameCount, Orbit, OrbitAxis};
+use angioray::{Sphere, Subject};
 use glam::DVec3;
+
+const SPHERE: Sphere = Sphere {
+    center_world: DVec3::new(10.0, -4.0, 2.5),
+    radius_mm: 60.0,
+};
 
 fn subject() -> Subject {
     Subject {
-        center_world: DVec3::new(10.0, -4.0, 2.5),
-        radius_mm: 60.0,
+        sphere: SPHERE,
+        content: SPHERE,
         spacing_mm: DVec3::ONE,
         range: Range {
             min: 0.0,
@@ -52,7 +57,7 @@ fn orbit(options: &str, axis: &str, degrees: f64, frames: u32) -> Frames {
 /// How far two cameras are apart: their eyes in radii of the volume, and their directions.
 fn apart(a: &Resolved, b: &Resolved) -> f64 {
     let (a, b) = (&a.scene.camera, &b.scene.camera);
-    (a.eye_world().distance(b.eye_world()) / subject().radius_mm)
+    (a.eye_world().distance(b.eye_world()) / SPHERE.radius_mm)
         .max(a.forward().distance(b.forward()))
         .max(a.up().distance(b.up()))
         .max(a.right().distance(b.right()))

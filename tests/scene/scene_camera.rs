@@ -1,16 +1,21 @@
 //! Camera options against cameras worked out by hand.
 
-use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens};
+use angioray::{Scene, Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
 
 /// A ball of radius 10 mm about (1, 2, 3).
-const SUBJECT: Subject = Subject {
+const SPHERE: Sphere = Sphere {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+};
+
+const SUBJECT: Subject = Subject {
+    sphere: SPHERE,
+    content: SPHERE,
     spacing_mm: DVec3::ONE,
     range: Range { min: 0.0, max: 1.0 },
     robust_range: Range { min: 0.0, max: 1.0 },
@@ -38,7 +43,7 @@ fn resolved(line: &[&str]) -> angioray::options::Resolved {
 /// Whether the eye lies in this direction from the volume's centre, with this up.
 fn eye_is(line: &[&str], toward: [f64; 3], up: [f64; 3]) -> bool {
     let camera = camera(line);
-    let toward_eye = (camera.eye_world() - SUBJECT.center_world).normalize();
+    let toward_eye = (camera.eye_world() - SPHERE.center_world).normalize();
     toward_eye.distance(toward.into()) < 1e-9 && camera.up().distance(up.into()) < 1e-9
 }
 
@@ -105,15 +110,19 @@ fn over_the_pole_nothing_breaks() {
 
 /// How far the bounding sphere's silhouette reaches, as a share of half the picture's smaller side.
 fn extent(line: &[&str]) -> f64 {
-    let scene = resolved(line).scene;
+    reach(&resolved(line).scene, SPHERE)
+}
+
+/// How far a sphere's silhouette about the picture's centre reaches, as a share of half the smaller side.
+fn reach(scene: &Scene, sphere: Sphere) -> f64 {
     let smaller = scene.size.aspect().min(1.0);
-    let distance = scene.camera.eye_world().distance(SUBJECT.center_world);
+    let distance = scene.camera.eye_world().distance(sphere.center_world);
     match scene.camera.lens() {
         Lens::Perspective { fov_deg } => {
-            let silhouette = (SUBJECT.radius_mm / distance).asin().tan();
+            let silhouette = (sphere.radius_mm / distance).asin().tan();
             silhouette / ((fov_deg.to_radians() / 2.0).tan() * smaller)
         }
-        Lens::Orthographic { height_mm } => SUBJECT.radius_mm / (height_mm / 2.0 * smaller),
+        Lens::Orthographic { height_mm } => sphere.radius_mm / (height_mm / 2.0 * smaller),
     }
 }
 
@@ -136,6 +145,75 @@ fn the_bounding_sphere_fits_the_smaller_side_at_zoom_1() {
     assert!((extent(&["--ortho", "40", "--zoom", "2"]) - 1.0).abs() < 1e-9);
     // The control.
     assert!((extent(&["--zoom", "1.01"]) - 1.0).abs() > 1e-3);
+}
+
+/// A small part of the ball, aside.
+const CONTENT: Sphere = Sphere {
+    center_world: DVec3::new(5.0, -1.0, 4.0),
+    radius_mm: 2.0,
+};
+
+/// A scene of the ball of which that part is shown.
+fn scene_of_part(line: &[&str]) -> Scene {
+    let words = std::iter::once("angioray").chain(line.iter().copied());
+    let options = Flags::try_parse_from(words).unwrap().options;
+    let subject = Subject {
+        content: CONTENT,
+        ..SUBJECT
+    };
+    let text = options.to_toml().unwrap();
+    assert_eq!(SceneOptions::parse(&text, "again").unwrap(), options);
+    options.resolve(&subject).unwrap().scene
+}
+
+#[test]
+fn the_content_fits_unless_the_volume_is_named() {
+    let forward_meets = |scene: &Scene, target: DVec3| {
+        let toward = (target - scene.camera.eye_world()).normalize();
+        toward.distance(scene.camera.forward()) < 1e-9
+    };
+    for (line, fitting, other) in [
+        (&[][..], CONTENT, SPHERE),
+        (&["--fit", "content", "--view", "left"], CONTENT, SPHERE),
+        (&["--size", "60x90", "--fov", "70"], CONTENT, SPHERE),
+        (&["--fit", "volume", "--roll", "7"], SPHERE, CONTENT),
+    ] {
+        let scene = scene_of_part(line);
+        assert!((reach(&scene, fitting) - 1.0).abs() < 1e-9, "{line:?}");
+        assert!(forward_meets(&scene, fitting.center_world), "{line:?}");
+        // The control.
+        assert!(!forward_meets(&scene, other.center_world), "{line:?}");
+    }
+    // About a target that is given a sphere as large fits.
+    let aimed = scene_of_part(&["--target", "-3,0,0"]);
+    let about_target = Sphere {
+        center_world: DVec3::new(-3.0, 0.0, 0.0),
+        ..CONTENT
+    };
+    assert!((reach(&aimed, about_target) - 1.0).abs() < 1e-9);
+    assert!(forward_meets(&aimed, about_target.center_world));
+    // A height is given by the user; the eye plane clears the whole volume.
+    let flat = scene_of_part(&["--ortho", "3"]);
+    let to_volume = SPHERE.center_world - flat.camera.eye_world();
+    assert!(to_volume.dot(flat.camera.forward()) > SPHERE.radius_mm);
+    assert!(forward_meets(&flat, CONTENT.center_world));
+    assert_eq!(flat.camera.lens(), Lens::Orthographic { height_mm: 3.0 });
+}
+
+#[test]
+fn a_fit_over_a_stored_scene_places_the_eye_anew_and_an_eye_takes_it_away() {
+    let of = |text: &str| SceneOptions::parse(text, "scene").unwrap();
+    let stored = resolved(&["--view", "left", "--fov", "40"]).options;
+    let framed = of("fit = 'volume'\nview = 'posterior'").over(stored.clone());
+    assert_eq!(
+        framed.camera,
+        of("fit = 'volume'\nview = 'posterior'\nfov = 40\nsize = [512, 512]").camera
+    );
+    // The control: without it the eye is where it was.
+    let kept = of("zoom = 2").over(stored.clone());
+    assert_eq!(kept.camera.eye, stored.camera.eye);
+    let eye = of("eye = [1, 2, -90]").over(of("fit = 'volume'\nzoom = 2"));
+    assert_eq!(eye.camera, of("eye = [1, 2, -90]\nzoom = 2").camera);
 }
 
 #[test]
@@ -248,18 +326,18 @@ fn an_orthographic_eye_plane_clears_the_volume_about_any_target() {
     let clearance = |target: DVec3| {
         let text = format!("{},{},{}", target.x, target.y, target.z);
         let c = camera(&["--ortho", "20", "--target", &text]);
-        (SUBJECT.center_world - c.eye_world()).dot(c.forward()) - SUBJECT.radius_mm
+        (SPHERE.center_world - c.eye_world()).dot(c.forward()) - SPHERE.radius_mm
     };
     for behind_mm in [0.0, 50.0, 1e6] {
-        let target = SUBJECT.center_world + DVec3::Y * behind_mm;
+        let target = SPHERE.center_world + DVec3::Y * behind_mm;
         assert!(clearance(target) > 0.0, "{behind_mm}");
-        let before = SUBJECT.center_world - DVec3::Y * behind_mm;
+        let before = SPHERE.center_world - DVec3::Y * behind_mm;
         assert!(clearance(before) > 0.0, "{behind_mm}");
     }
     // The control: an eye that is given may lie inside.
     let inside = camera(&["--ortho", "20", "--eye", "1,1,3"]);
-    let depth = (SUBJECT.center_world - inside.eye_world()).dot(inside.forward());
-    assert!(depth < SUBJECT.radius_mm);
+    let depth = (SPHERE.center_world - inside.eye_world()).dot(inside.forward());
+    assert!(depth < SPHERE.radius_mm);
 }
 
 #[test]

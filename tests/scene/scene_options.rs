@@ -1,15 +1,20 @@
 //! Scene options: flags and scene files, alone and together, to a scene and back.
 
-use angioray::Subject;
 use angioray::extent::{ImageSize, Range};
 use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
 use angioray::scene::{Gradient, Lens, Picture, Precomputed, Projection};
+use angioray::{Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
 
-const SUBJECT: Subject = Subject {
+const SPHERE: Sphere = Sphere {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+};
+
+const SUBJECT: Subject = Subject {
+    sphere: SPHERE,
+    content: SPHERE,
     spacing_mm: DVec3::ONE,
     range: Range {
         min: -100.0,

@@ -1,14 +1,19 @@
 //! Which sampling a scene has: what is wanted, what that implies, and what goes with it.
 
-use angioray::Subject;
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
 use angioray::scene::{Emission, Picture, QuadratureMethod, SamplingMethod};
+use angioray::{Sphere, Subject};
 use glam::DVec3;
 
-const SUBJECT: Subject = Subject {
+const SPHERE: Sphere = Sphere {
     center_world: DVec3::ZERO,
     radius_mm: 10.0,
+};
+
+const SUBJECT: Subject = Subject {
+    sphere: SPHERE,
+    content: SPHERE,
     spacing_mm: DVec3::ONE,
     range: Range {
         min: 0.0,

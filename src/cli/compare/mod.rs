@@ -35,7 +35,8 @@ use reference_cache::reference_cache;
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
-An option applies to the modes that it belongs to: --iso and --tf can be given together.
+An option applies to the modes that it belongs to: --iso and --tf can be given together. All modes are seen
+from one place: with --fit content, what any of them shows fits their pictures.
 
 The options --sampling, --step, --filter and the like make one more setting, 'as given'; what
 --max-error chooses is another. All are compared with the reference of the scene, in linear
@@ -112,8 +113,8 @@ impl CompareArguments {
             .collect::<Result<Vec<Peer>>>()?;
 
         let bars = Bars::new();
-        let loaded = source.load(Some(device.info()), &bars)?;
-        let modes = request.mode_settings(&loaded.measured(options), &loaded)?;
+        let mut loaded = source.load(Some(device.info()), &bars)?;
+        let modes = request.mode_settings(options, &mut loaded)?;
         load_into(&mut peers, &loaded, &bars)?;
         let began = Instant::now();
         let octree = Octree::build(&loaded.volume, source.leaf, &bars)?;
@@ -192,11 +193,19 @@ impl Request {
         checks::inputs(folder, source, options, self.scene_file.path(), configs)
     }
 
-    /// The modes in their settings, about which the user is notified.
-    fn mode_settings(&self, options: &SceneOptions, loaded: &Loaded) -> Result<Vec<ModeSettings>> {
+    /// The modes in their settings, all seen from one place, about which the user is notified.
+    fn mode_settings(
+        &self,
+        options: SceneOptions,
+        loaded: &mut Loaded,
+    ) -> Result<Vec<ModeSettings>> {
+        let options = loaded.measured(options);
+        let modes = self.modes.iter();
+        let seen = modes.map(|&mode| ModeSettings::seen(mode, &options));
+        loaded.frame(&seen.collect::<Result<Vec<_>>>()?)?;
         let modes = self.modes.iter();
         let mut modes = modes
-            .map(|&mode| mode_settings(mode, options, self.configs.as_ref(), loaded))
+            .map(|&mode| mode_settings(mode, &options, self.configs.as_ref(), loaded))
             .collect::<Result<Vec<ModeSettings>>>()?;
         if let Some(bound) = self.bound {
             add_bound(&mut modes, bound);

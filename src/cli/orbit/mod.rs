@@ -56,8 +56,9 @@ impl OrbitArguments {
         let backend = Backend::open(&job.device)?;
 
         let bars = Bars::new();
-        let loaded = job.source.load(backend.device_info(), &bars)?;
+        let mut loaded = job.source.load(backend.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
+        loaded.frame(std::slice::from_ref(&job.options))?;
         let resolved = job.options.resolve(&loaded.subject)?;
         resolved.notes.iter().for_each(note);
         plan.destination.check_size(resolved.scene.size)?;

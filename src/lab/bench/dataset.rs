@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::options::{SceneOptions, Setting};
 use crate::scene::{Emission, Knot, Picture, Rgb, Scene, TransferFunction};
-use crate::subject::Subject;
+use crate::subject::{Sphere, Subject};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };
@@ -57,10 +57,10 @@ impl Dataset {
     }
 
     fn resolved_options(&self, options: SceneOptions) -> Result<Scene> {
-        let (center_world, radius_mm) = self.volume.bounding_sphere();
+        let sphere = Sphere::from(self.volume.bounding_sphere());
         let subject = Subject {
-            center_world,
-            radius_mm,
+            sphere,
+            content: sphere,
             spacing_mm: self.volume.geometry().spacing_mm(),
             range: self.volume.range(),
             robust_range: self.volume.range(),

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::extent::Dims;
 use crate::options::{ErrorBound, ErrorMetric, SceneOptions};
 use crate::scene::Mode;
-use crate::subject::Subject;
+use crate::subject::{Sphere, Subject};
 use crate::volume::{PhantomKind, PhantomSpec, Volume, VoxelType, phantom};
 
 /// A random phantom of 24 to 64 voxels along each axis, its voxels a third of the time longer along
@@ -40,12 +40,12 @@ pub fn view(number: u64, mode: Mode, side_px: u32, subject: &Subject) -> String 
     let mut rng = Rng::new(number);
     let mut text = format!("mode = '{mode}'\nsize = [{side_px}, {side_px}]\n");
     let mut add = |line: String| text.push_str(&(line + "\n"));
-    let radius = subject.radius_mm;
+    let radius = subject.sphere.radius_mm;
     if rng.one_in(4) {
         // From inside, or nearly so.
         let mut point = |radii: f64| {
             let mut coordinate = || radius * radii * rng.between(-1.0, 1.0);
-            subject.center_world + DVec3::new(coordinate(), coordinate(), coordinate())
+            subject.sphere.center_world + DVec3::new(coordinate(), coordinate(), coordinate())
         };
         let (eye, target) = (point(0.6), point(0.5));
         let list = |p: DVec3| format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z);
@@ -109,7 +109,7 @@ fn transfer_function(rng: &mut Rng, subject: &Subject) -> String {
         let value = subject.range.at(share);
         points.push(format!("[{value:?}, {r:?}, {g:?}, {b:?}, {opacity:?}]"));
     }
-    let unit = subject.radius_mm * rng.by_magnitude(0.02, 0.5);
+    let unit = subject.sphere.radius_mm * rng.by_magnitude(0.02, 0.5);
     format!(
         "tf = {{ unit_length_mm = {unit:?}, points = [{}] }}",
         points.join(", ")
@@ -136,11 +136,11 @@ pub fn bound(number: u64, metric: ErrorMetric) -> Result<ErrorBound> {
 
 /// The properties of a volume from which a scene's defaults are made.
 pub fn subject(volume: &Volume) -> Subject {
-    let (center_world, radius_mm) = volume.bounding_sphere();
+    let sphere = Sphere::from(volume.bounding_sphere());
     let range = volume.range();
     Subject {
-        center_world,
-        radius_mm,
+        sphere,
+        content: sphere,
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

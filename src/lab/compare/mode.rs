@@ -46,8 +46,7 @@ impl ModeSettings {
         settings: Option<Vec<Setting>>,
         subject: &Subject,
     ) -> Result<Self> {
-        let seen = base.of_mode(mode).what();
-        let resolved = seen.checked()?.resolve(subject)?;
+        let resolved = Self::seen(mode, base)?.resolve(subject)?;
         let settings = match settings {
             Some(settings) => settings,
             None => built_in(mode)?,
@@ -62,6 +61,14 @@ impl ModeSettings {
             this.add(setting, subject)?;
         }
         Ok(this)
+    }
+
+    /// What is seen by `base` in a mode, however rays are followed.
+    ///
+    /// # Errors
+    /// Usage: the options contradict each other.
+    pub fn seen(mode: Mode, base: &SceneOptions) -> Result<SceneOptions> {
+        base.of_mode(mode).what().checked()
     }
 
     /// Adds one setting: what `options` says, as far as it means something in the mode, of how rays

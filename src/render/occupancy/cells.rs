@@ -39,9 +39,8 @@ pub fn absorbing(
     knots: &Knots,
 ) -> Result<Vec<u64>> {
     let ranges = OpacityRanges::new(knots);
-    let [from, to] = knots.absorbing();
     visited(volume, octree, classes, |[min, max]| {
-        max >= from && min <= to && !ranges.is_transparent(min, max)
+        ranges.absorbs(min, max)
     })
 }
 
@@ -133,7 +132,7 @@ fn join<T: Voxel>(a: [T; 2], b: [T; 2]) -> [T; 2] {
 }
 
 /// Whether a cell may be crossed, as the kernels find its side: heights are single-precision differences.
-fn may_cross([min, max]: [f32; 2], iso: StoredIso) -> bool {
+pub fn may_cross([min, max]: [f32; 2], iso: StoredIso) -> bool {
     let above = min - iso.value >= iso.error;
     let below = max - iso.value < -iso.error;
     !(above || below)

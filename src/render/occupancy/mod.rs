@@ -3,14 +3,17 @@
 mod cache;
 mod cells;
 mod classes;
+mod content;
 mod criterion;
 mod distance;
 mod floor;
 mod homogeneity;
 mod occupancy_map;
 mod opacity_ranges;
+mod rows;
 
 pub use cache::OccupancyCache;
+pub use content::content_sphere;
 pub use criterion::{Criterion, Opacity};
 pub use floor::Floor;
 pub use homogeneity::stand_ins;

@@ -19,6 +19,8 @@ pub struct OpacityRanges<'a> {
     opaque: Vec<u32>,
     /// `extremes[l][k]`: minimum and maximum of the 2^l knots from k on, per channel.
     extremes: Vec<Vec<[[f32; 4]; 2]>>,
+    /// The values outside of which nothing absorbs.
+    absorbing: [f32; 2],
 }
 
 const BINS: usize = 4096;
@@ -38,6 +40,7 @@ impl<'a> OpacityRanges<'a> {
             first: vec![0; BINS + 1],
             opaque: vec![0],
             extremes: vec![knots.colors.iter().map(|&c| [c, c]).collect()],
+            absorbing: knots.absorbing(),
         };
         for k in 0..count {
             let bin = ranges.bin(knots.values[k]);
@@ -72,6 +75,12 @@ impl<'a> OpacityRanges<'a> {
         let (from, to) = (self.first[bin] as usize, self.first[bin + 1] as usize);
         let before = |&v: &f32| if with_equal { v <= value } else { v < value };
         from + self.knots.values[from..to].partition_point(before)
+    }
+
+    /// Whether some value of a range absorbs.
+    pub fn absorbs(&self, min: f32, max: f32) -> bool {
+        let [from, to] = self.absorbing;
+        max >= from && min <= to && !self.is_transparent(min, max)
     }
 
     /// Whether the opacity vanishes on all of a range.

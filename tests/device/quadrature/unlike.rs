@@ -1,12 +1,12 @@
 //! Volumes of strongly unlike spacings: dvr's default takes the rule that has no steps, which keeps its
 //! bound there at a cost that does not grow with the ratio.
 
-use angioray::Subject;
 use angioray::extent::ImageSize;
 use angioray::frame::STEPS;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens, Picture, Quadrature, QuadratureMethod, Scene};
 use angioray::volume::{Geometry, Volume};
+use angioray::{Sphere, Subject};
 use glam::{DMat3, DVec3};
 
 use crate::common::{self, hash, on_device, on_reference, volume_with};
@@ -22,11 +22,11 @@ fn ball(dims: [u64; 3], spacing_mm: [f64; 3]) -> Volume {
 }
 
 fn subject(volume: &Volume) -> Subject {
-    let (center_world, radius_mm) = volume.bounding_sphere();
+    let sphere = Sphere::from(volume.bounding_sphere());
     let range = volume.range();
     Subject {
-        center_world,
-        radius_mm,
+        sphere,
+        content: sphere,
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

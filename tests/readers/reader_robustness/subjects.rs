@@ -5,7 +5,6 @@ use std::fs;
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
-use angioray::Subject;
 use angioray::extent::{ImageSize, Range};
 use angioray::frame::{Encoding, Format, Frame, Wanted, read_metadata, write};
 use angioray::octree::{Leaf, Octree};
@@ -13,6 +12,7 @@ use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::scene::TransferFile;
 use angioray::volume::{Histogram, RawLayout, ReadOptions, read, suggested_iso};
+use angioray::{Sphere, Subject};
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use flate2::{Compression, Crc};
@@ -32,9 +32,14 @@ const SCENES: [&str; 4] = [
 ];
 
 /// As measured of a small volume.
-const SUBJECT: Subject = Subject {
+const SPHERE: Sphere = Sphere {
     center_world: DVec3::new(1.0, 2.0, 3.0),
     radius_mm: 10.0,
+};
+
+const SUBJECT: Subject = Subject {
+    sphere: SPHERE,
+    content: SPHERE,
     spacing_mm: DVec3::new(0.5, 0.5, 2.0),
     range: Range {
         min: -100.0,

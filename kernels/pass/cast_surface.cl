@@ -4,11 +4,14 @@
 // skipped (Lesar et al. 2015, §III-C), the crossing refined between two samples. With `probe`, a peak on the other
 // side is searched for between two samples on one side where the field may turn between them. "Inside"
 // is Phi >= iso. With caps, a ray that enters through a face of the volume or a clip plane where it is
-// inside hits there.
+// inside hits there. With NEAREST_MARCH samples are the nearest voxels' values, but for the first of a ray that may be
+// capped, and a crossing between two of them is found in the field itself (`lib/find/approach.clh`); no peak is
+// searched for.
 //
 // Reads the voxels, the clip planes (index space), per octree node its CLASS_*, and a bit per cell that
 // the surface may cross. Writes per ray hit_mm (t; +inf: none) and kind; with LAYERS depth (mm from the eye)
 // and value at the hit (stored units; 0 without a hit); with COUNTERS the samples taken and the nodes tested.
+#include "lib/find/approach.clh"
 #include "lib/find/peak.clh"
 #include "lib/find/refine.clh"
 #include "lib/ray/cast_planes.clh"
@@ -38,9 +41,32 @@ static inline SurfaceState surface_start(SurfaceCast cast, Mask capped)
 
 static inline RayPoint point_at(VOXELS voxels, const SegmentMarch *march, SurfaceCast cast, Ints k)
 {
-    return ray_point(voxels, &march->lattice, FLOATS(1.0f), cast.iso, cast.probe, lattice_t(&march->lattice, k));
+    Floats t = lattice_t(&march->lattice, k);
+#if NEAREST_MARCH
+    Floats value = nearest_at(voxels, march->lattice.volume, lattice_point(&march->lattice, t));
+    RayPoint point = {t, value - cast.iso, FLOATS(0.0f)};
+    return point;
+#else
+    return ray_point(voxels, &march->lattice, FLOATS(1.0f), cast.iso, cast.probe, t);
+#endif
 }
 
+// Which rays of `which`, whose first sample is `first`, hit where they begin.
+static inline Mask begins_inside(VOXELS voxels, SurfaceState *state, const SegmentMarch *march, RayPoint first, Mask which)
+{
+    Mask capped = which & state->capped;
+#if NEAREST_MARCH
+    if (ANY(capped)) {
+        state->samples += capped ? INTS(1) : INTS(0);
+        return capped & iso_distance(voxels, &march->lattice, state->cast.iso, first.t) >= 0.0f;
+    }
+    return capped;
+#else
+    return capped & first.height >= 0.0f;
+#endif
+}
+
+#if !NEAREST_MARCH
 // A peak between two samples on one side that reaches the other side, in the lanes of `which`; `far` becomes
 // that peak. Returns the lanes that have one.
 static inline Mask peak_across(VOXELS voxels, SurfaceState *state, const SegmentMarch *march, RayPoint here, Mask which, RayPoint *far)
@@ -55,6 +81,7 @@ static inline Mask peak_across(VOXELS voxels, SurfaceState *state, const Segment
     far->height = turns ? sign * peak.height : far->height;
     return turns;
 }
+#endif
 
 // Tests the next segment, in the lanes of `which`.
 static inline void test_segment(VOXELS voxels, SurfaceState *state, SegmentMarch *march, Mask which)
@@ -72,14 +99,16 @@ static inline void test_segment(VOXELS voxels, SurfaceState *state, SegmentMarch
     Mask inside = here.height >= 0.0f;
     Mask crosses = which & !first & (inside ^ (before.height >= 0.0f));
     RayPoint far = here;
+#if !NEAREST_MARCH
     if (state->cast.probe)
         crosses = crosses | peak_across(voxels, state, march, here, which & !first & !crosses, &far);
+#endif
     state->bracket.near = crosses ? before.t : state->bracket.near;
     state->bracket.f_near = crosses ? before.height : state->bracket.f_near;
     state->bracket.far = crosses ? far.t : state->bracket.far;
     state->bracket.f_far = crosses ? far.height : state->bracket.f_far;
     state->kind = crosses ? INTS(KIND_SURFACE) : state->kind;
-    state->kind = which & first & inside & state->capped ? INTS(KIND_CAP) : state->kind;
+    state->kind = begins_inside(voxels, state, march, here, which & first) ? INTS(KIND_CAP) : state->kind;
     state->before = point_if(which, here, before);
     segments_step(&march->run, which);
 }
@@ -110,7 +139,14 @@ kernel void cast_surface(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid v
     Mask crossed = state.kind == KIND_SURFACE;
     if (ANY(crossed)) {
         Refinement by = {cast.iso, cast.refine, (int)cast.iterations};
+#if NEAREST_MARCH
+        Mask entering = state.bracket.f_far >= 0.0f;
+        Mask bracketed = bracket_approach(voxels, &march.lattice, cast.iso, &state.bracket, entering, crossed, &state.samples);
+        Floats refined = refine(voxels, &march.lattice, by, state.bracket, bracketed, &state.samples);
+        refined = bracketed ? refined : state.bracket.far;
+#else
         Floats refined = refine(voxels, &march.lattice, by, state.bracket, crossed, &state.samples);
+#endif
         hit_from_entry_mm = crossed ? refined : hit_from_entry_mm;
     }
 

@@ -77,10 +77,7 @@ impl Schedule for SurfacePasses<'_> {
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         let Self { view, .. } = *self;
-        let find = match view.scene.sampling.method {
-            SamplingMethod::Fixed => cast_surface,
-            SamplingMethod::Exact => exact_surface,
-        };
+        let sampling = &view.scene.sampling;
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
@@ -90,7 +87,13 @@ impl Schedule for SurfacePasses<'_> {
         else {
             return Ok(());
         };
-        find(run, view.inputs, &self.cast, hit_mm, layers)?;
+        let (inputs, cast) = (view.inputs, &self.cast);
+        match sampling.method {
+            SamplingMethod::Fixed => {
+                cast_surface(run, inputs, cast, sampling.recon, hit_mm, layers)?
+            }
+            SamplingMethod::Exact => exact_surface(run, inputs, cast, hit_mm, layers)?,
+        }
         if layers.has(Layer::Normal) {
             surface_normal(run, view.inputs, view.gradient, hit_mm, layers)?;
         }

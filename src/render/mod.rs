@@ -11,5 +11,5 @@ mod resources;
 
 pub use abi::{Lanes, Variant, struct_layouts};
 pub use frame::{Options, Renderer, Rendering, Sampled, check_picture, check_volume};
-pub use ray_caster::{FirstCrossing, RayCaster};
+pub use ray_caster::{FirstCrossing, RayCaster, TimedCrossings};
 pub use resources::{AngleError, Directions, GradientFigures, IndexRay};

@@ -1,0 +1,168 @@
+//! What is seen, and the ways in which its pixels get their colours.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::lab::bench::Dataset;
+use crate::scene::{Mode, Refill, Scene, Sparse, SparseGrid};
+
+/// A picture that is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// The shaded surface.
+    Surface,
+    /// The maximum along each ray.
+    Maximum,
+}
+
+impl Shown {
+    pub const ALL: [Self; 2] = [Self::Surface, Self::Maximum];
+
+    pub fn mode(self) -> Mode {
+        match self {
+            Self::Surface => Mode::Iso,
+            Self::Maximum => Mode::Mip,
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        self.mode().name()
+    }
+
+    pub fn scene(self, dataset: &Dataset, side_px: u32) -> Result<Scene> {
+        let iso = dataset.iso;
+        match self {
+            Self::Surface => dataset.scene(side_px, &format!("mode = 'iso'\niso = {iso:?}\n")),
+            Self::Maximum => dataset.maximum(side_px),
+        }
+    }
+}
+
+/// A way in which pixels get their colours, or rays their hits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way {
+    /// A ray in every pixel.
+    Whole,
+    /// Rays in some pixels.
+    Sparse(Sparse),
+    /// A ray for every pixel, given one by one.
+    OneByOne,
+    /// The same rays, each from the depth that coarse rays around it found, those being so many pixels apart
+    /// (Belyaev et al. 2018).
+    FromNeighbours(u32),
+}
+
+/// How a way is called in tables and plots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Family {
+    Whole,
+    None,
+    Gradient,
+    Flood,
+    Certified,
+    OneByOne,
+    FromNeighbours,
+}
+
+impl Family {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "every pixel",
+            Self::None => "no refill",
+            Self::Gradient => "gradient",
+            Self::Flood => "flood",
+            Self::Certified => "certified",
+            Self::OneByOne => "rays one by one",
+            Self::FromNeighbours => "from neighbours' depth",
+        }
+    }
+}
+
+const SPACINGS: [u32; 3] = [2, 4, 8];
+
+impl Way {
+    /// All ways of a picture. The first is that with which the others are compared, and [`Way::OneByOne`] that with
+    /// which [`Way::FromNeighbours`] are.
+    ///
+    /// # Errors
+    /// A refill that the mode does not have, which tests rule out.
+    pub fn all(shown: Shown) -> Result<Vec<Self>> {
+        let mut ways = vec![Self::Whole];
+        for &refill in refills(shown) {
+            for spacing in SPACINGS {
+                let grid = SparseGrid::new(spacing, None)?;
+                ways.push(Self::Sparse(Sparse::new(grid, Some(refill), shown.mode())?));
+            }
+        }
+        ways.extend(adaptive(shown));
+        if shown == Shown::Surface {
+            ways.push(Self::OneByOne);
+            ways.extend(SPACINGS.map(Self::FromNeighbours));
+        }
+        Ok(ways)
+    }
+
+    pub fn family(self) -> Family {
+        match self {
+            Self::Whole => Family::Whole,
+            Self::Sparse(sparse) => match sparse.refill {
+                Refill::None => Family::None,
+                Refill::Gradient => Family::Gradient,
+                Refill::Flood => Family::Flood,
+                Refill::Certified => Family::Certified,
+            },
+            Self::OneByOne => Family::OneByOne,
+            Self::FromNeighbours(_) => Family::FromNeighbours,
+        }
+    }
+
+    /// Pixels from one ray of the grid to the next, where there is one.
+    pub fn spacing(self) -> Option<u32> {
+        match self {
+            Self::Sparse(sparse) => Some(sparse.spacing),
+            Self::FromNeighbours(spacing) => Some(spacing),
+            Self::Whole | Self::OneByOne => None,
+        }
+    }
+
+    /// Whether rays are given one by one, and are not a picture's.
+    pub fn is_one_by_one(self) -> bool {
+        matches!(self, Self::OneByOne | Self::FromNeighbours(_))
+    }
+}
+
+fn refills(shown: Shown) -> &'static [Refill] {
+    match shown {
+        Shown::Surface => &[Refill::Gradient, Refill::Flood, Refill::Certified],
+        Shown::Maximum => &[Refill::Gradient, Refill::Flood],
+    }
+}
+
+/// Adaptive casting within a bound on the screen (`--screen-error`): its bounds belong here, one [`Way`] each, with a
+/// [`Family`] of its own.
+fn adaptive(_shown: Shown) -> Vec<Way> {
+    Vec::new()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_picture_has_its_refills_at_every_spacing() {
+        let count = |shown, family| {
+            let ways = Way::all(shown).unwrap();
+            ways.iter().filter(|way| way.family() == family).count()
+        };
+        for shown in Shown::ALL {
+            assert_eq!(Way::all(shown).unwrap()[0], Way::Whole);
+            assert_eq!(count(shown, Family::Gradient), SPACINGS.len());
+        }
+        assert_eq!(count(Shown::Surface, Family::Certified), SPACINGS.len());
+        assert_eq!(
+            count(Shown::Surface, Family::FromNeighbours),
+            SPACINGS.len()
+        );
+        assert_eq!(count(Shown::Maximum, Family::Certified), 0);
+    }
+}

@@ -89,7 +89,7 @@ fn hits_of_a_ball_are_near_the_surface_and_most_are_on_it() {
 }
 
 #[test]
-fn a_ray_on_which_nothing_changes_sides_takes_the_samples_of_the_filter_at_every_one() {
+fn a_ray_takes_more_samples_only_where_nearest_voxels_and_the_field_may_disagree() {
     let Some(device) = common::device() else {
         return;
     };
@@ -101,20 +101,21 @@ fn a_ray_on_which_nothing_changes_sides_takes_the_samples_of_the_filter_at_every
         [plane(0, KIND), plane(1, KIND)],
         [plane(0, STEPS), plane(1, STEPS)],
     );
-    let mut missed = 0;
+    let (mut missed, mut same) = (0, 0);
     for pixel in 0..scenes[0].size.pixels() {
         let hit = [kinds[0][pixel] != 0, kinds[1][pixel] != 0];
         if hit == [false; 2] && steps[1][pixel] > 0 {
-            assert_eq!(steps[0][pixel], steps[1][pixel], "pixel {pixel}");
+            assert!(steps[0][pixel] >= steps[1][pixel], "pixel {pixel}");
+            same += usize::from(steps[0][pixel] == steps[1][pixel]);
             missed += 1;
         }
-        // A hit takes two samples more, or three, and no more iterations than there are.
+        // A hit takes one more at each sample between the nearest voxels' surface and the field's.
         if hit == [true; 2] {
-            let budget = steps[1][pixel] + 3 + 2 * 5 + 1 + (0.9 / STEP_VOXELS) as u32;
+            let budget = steps[1][pixel] + 2 * 5 + 4 + 2 * (2.0 / STEP_VOXELS) as u32;
             assert!(steps[0][pixel] <= budget, "pixel {pixel}");
         }
     }
-    assert!(missed > 0);
+    assert!(2 * same > missed && missed > 0, "{same} of {missed}");
 }
 
 /// Depth, value and kind.
@@ -144,17 +145,18 @@ fn assert_same_whatever_the_way(volume: &Volume, scene: &Scene) {
     unskipped.sampling.skip = false;
     let expected = cast(&device, volume, &unskipped, Lanes::ONE, 8);
     let hits = expected.plane(KIND).unwrap().iter().filter(|&&k| k != 0);
-    assert!(hits.count() > 100);
+    assert!(hits.count() > 50);
     let nodes = expected.plane(NODES).unwrap();
     assert!(nodes.iter().all(|&n| n == 0));
+    let mut ways = vec![(Lanes::ONE, Traverse::Uniform, 5)];
     for lanes in Lanes::ALL {
-        for traverse in [Traverse::Uniform, Traverse::KdRestart, Traverse::Distance] {
-            let leaf = if traverse == Traverse::Uniform { 5 } else { 8 };
-            let mut by = scene.clone();
-            by.sampling.traverse = traverse;
-            let frame = cast(&device, volume, &by, lanes, leaf);
-            assert!(bits(&frame) == bits(&expected), "{traverse}, {lanes} lanes");
-        }
+        ways.extend([Traverse::KdRestart, Traverse::Distance].map(|by| (lanes, by, 8)));
+    }
+    for (lanes, traverse, leaf) in ways {
+        let mut by = scene.clone();
+        by.sampling.traverse = traverse;
+        let frame = cast(&device, volume, &by, lanes, leaf);
+        assert!(bits(&frame) == bits(&expected), "{traverse}, {lanes} lanes");
     }
     if common::has_images(&device).is_ok() {
         let mut by = scene.clone();

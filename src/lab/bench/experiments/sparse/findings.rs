@@ -44,7 +44,7 @@ fn sentence(place: &str, family: Family, measured: &[(Protocol, Vec<WayRow>)]) -
     );
     if rows.iter().any(|row| row.lost.displaced.is_some()) {
         let shares = percents(|row| row.lost.displaced_share());
-        text += &format!(", {shares} % of them at another depth");
+        text += &format!(", and shows {shares} % of them at another depth");
     }
     for (protocol, all) in measured {
         let ratio = |row: &WayRow| format!("{:.2}", row.times.over(&all[row.base].times));

@@ -1,6 +1,7 @@
 //! The plots: error over the number of rays, as Kratz et al. 2011 plot it, and over time.
 
 use super::measure::WayRow;
+use super::way::Family;
 use crate::lab::bench::Protocol;
 use crate::lab::bench::papers::axis;
 use crate::lab::measure::{Tradeoff, front};
@@ -13,6 +14,11 @@ const LOST: (&str, Error) = ("lost vessel pixels", |row| {
     Some(100.0 * row.lost.lost_share()?)
 });
 const COLOR: (&str, Error) = ("colour rmse", |row| Some(100.0 * row.rmse?));
+
+const ALONE: &str = "Compared with a ray in every pixel.";
+const BESIDE_RIVAL: &str = "Compared with a ray in every pixel; rays one by one, and those from their neighbours' \
+                            depth, find the surface alone and colour nothing, so that their times stand beside each \
+                            other only.";
 
 /// A picture's part of the page.
 pub fn section(place: &str, measured: &[(Protocol, Vec<WayRow>)]) -> Section {
@@ -38,11 +44,11 @@ pub fn section(place: &str, measured: &[(Protocol, Vec<WayRow>)]) -> Section {
             scatters.push(scatter(title, ("time", "ms"), (label, error), rows, ms));
         }
     }
+    let mut rows = measured.iter().flat_map(|(_, rows)| rows);
+    let has_rival = rows.any(|row| row.family == Family::OneByOne);
     Section {
         title: place.to_owned(),
-        about: "Compared with a ray in every pixel; rays one by one, and those from their neighbours' depth, find \
-                the surface alone and colour nothing, so that their times stand beside each other only."
-            .into(),
+        about: if has_rival { BESIDE_RIVAL } else { ALONE }.into(),
         scatters,
         ..Section::default()
     }

@@ -61,16 +61,16 @@ group! {
         iso: Threshold,
 
         /// How frames are timed: static, the camera where it is; or orbit, once around the volume
-        /// in 36 frames (12 with --quick) [default: static; b15: both]
+        /// in 36 frames (12 with --quick) [default: static; b15 and sparse: both]
         #[arg(long, value_name = "static|orbit")]
         protocol: Protocol,
 
-        /// Rays in the experiment rays [default: 10000000; a tenth of it with --quick, ten times as
-        /// many with --full]
+        /// Rays in the experiment rays, pixels in sparse-rays [default: 10000000; a tenth of it with
+        /// --quick, ten times as many with --full]
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         rays: Count<u64>,
 
-        /// Decides the volumes and the rays of the experiment rays [default: 4]
+        /// Decides the volumes and the rays of the experiments rays and sparse-rays [default: 4]
         #[arg(long, value_name = "S", allow_hyphen_values = true)]
         seed: Seed,
 
@@ -124,6 +124,7 @@ Example:
   angioray bench vessels head.nrrd cta.mha -o results --full
   angioray bench pareto head.nrrd -o results --quick
   angioray bench tolerance -o results
+  angioray bench sparse head.nrrd -o sparse --quick
   angioray bench speed -o speed --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
   angioray bench b1 head.nrrd --iso 50% --protocol orbit -o results
   angioray bench traversals head_256x256x256_uint8.raw.gz",

@@ -18,6 +18,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "smooth", "Smooth with a Gaussian of this sigma in mm"),
     ("", "caps", "close the surface where the volume ends"),
     ("", "refine", "how a hit is refined"),
+    ("", "recon", "the filter at every sample or at hits"),
     ("", "diffuse", "light reflected in all directions"),
     ("", "gradient-scale", "voxels from one to the next"),
     ("", "refill", "the blocks that are cast too"),

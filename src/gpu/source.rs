@@ -17,6 +17,7 @@ macro_rules! embedded {
 /// Every kernel file, its path below `kernels/`.
 const FILES: &[(&str, &str)] = embedded![
     "lib/abi.clh",
+    "lib/find/approach.clh",
     "lib/find/crossing.clh",
     "lib/find/peak.clh",
     "lib/find/refine.clh",

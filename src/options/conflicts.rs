@@ -1,8 +1,9 @@
 //! Which options of a scene contradict each other, and which of a scene file's give way to a flag beside
 //! those that lose what they need ([`super::rules`]).
 
+use super::enum_names::Switch;
 use super::{SceneOptions, Shading};
-use crate::scene::{Mode, QuadratureMethod, SamplingMethod, Storage, View};
+use crate::scene::{Filter, Mode, QuadratureMethod, Reconstruction, SamplingMethod, Storage, View};
 
 /// Two options of one scene that cannot both be meant.
 pub(super) struct Contradiction {
@@ -68,6 +69,21 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "choose sampling exact, or leave screen-error out",
     },
     Contradiction {
+        is_in: |all| marches_nearest(all) && is_exact(all),
+        sentence: "'recon' adaptive cannot be combined with exact sampling, which solves the field and takes no samples",
+        hint: "choose sampling fixed",
+    },
+    Contradiction {
+        is_in: |all| marches_nearest(all) && all.sampling.filter == Some(Filter::Nearest),
+        sentence: "'recon' adaptive cannot be combined with 'filter' nearest, of which every sample already is",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
+        is_in: |all| marches_nearest(all) && all.sampling.probe == Some(Switch::On),
+        sentence: "'recon' adaptive cannot be combined with 'probe' on: between nearest voxels the field has no slope",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -82,6 +98,11 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
 /// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
     options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
+}
+
+/// Whether the march toward a surface takes the nearest voxels.
+fn marches_nearest(options: &SceneOptions) -> bool {
+    options.sampling.recon == Some(Reconstruction::Adaptive)
 }
 
 const TURNED: &str = "'azimuth', 'elevation', 'roll' and 'zoom' turn and zoom either";
@@ -103,7 +124,7 @@ pub(super) const REPLACED: &[Replaced] = &[
             let is_dvr = |options: &SceneOptions| options.mode() == Mode::Dvr;
             flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
         },
-        options: &["sampling", "step", "probe", "refine"],
+        options: &["sampling", "step", "probe", "recon", "refine"],
     },
     // Light of which the file's own mode made no use is not another mode's.
     Replaced {
@@ -135,7 +156,30 @@ pub(super) const REPLACED: &[Replaced] = &[
     },
     Replaced {
         by: |flags, _| is_exact(flags),
-        options: &["step", "probe", "refine", "homogeneity", "homogeneity-rule"],
+        options: &[
+            "step",
+            "probe",
+            "recon",
+            "refine",
+            "homogeneity",
+            "homogeneity-rule",
+        ],
+    },
+    // Nearest voxels on the way to a hit are neither probed between nor all there is.
+    Replaced {
+        by: |flags, _| marches_nearest(flags),
+        options: &["probe"],
+    },
+    Replaced {
+        by: |flags, file| marches_nearest(flags) && file.sampling.filter == Some(Filter::Nearest),
+        options: &["filter"],
+    },
+    Replaced {
+        by: |flags, _| {
+            let sampling = &flags.sampling;
+            sampling.filter == Some(Filter::Nearest) || sampling.probe == Some(Switch::On)
+        },
+        options: &["recon"],
     },
     Replaced {
         by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),

@@ -67,7 +67,7 @@ impl SceneOptions {
         } = given.picture.resolve(self.quadrature(), subject)?;
         let (size, camera, of_camera) = given.camera.resolve(subject)?;
         let (clip_planes, of_clip) = given.clip.resolve()?;
-        let (sampling, mut of_sampling) = given.sampling.resolve(method);
+        let (sampling, mut of_sampling) = given.sampling.resolve(method, picture.mode());
         let sparse = of_sampling.resolve_sparse(picture.mode())?;
         let (tone, of_tone) = given.tone.resolve();
         let scene = Scene {

@@ -15,8 +15,8 @@ use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
     AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode,
-    Picture, Quadrature, Refill, Refine, Reflectance, Sampling, SamplingMethod, Shininess, Sparse,
-    SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
+    Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling, SamplingMethod,
+    Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
 };
 
 /// The options among which a name is unique.
@@ -171,12 +171,14 @@ pub(crate) const RULES: &[Rule] = &[
         .default(text::<StepVoxels>),
     scene("filter", How, &[])
         .default(text::<Filter>),
+    scene("recon", HowWithinBound, &[Need::Modes(ISO, "only a surface has a hit at which to change the filter"), Need::Steps])
+        .default(text::<Reconstruction>),
     scene("traverse", How, &[])
         .default(|| Sampling::default().traverse.to_string()),
     scene("skip", How, &[])
         .default(|| Switch::from(Sampling::default().skip).to_string()),
     scene("probe", HowWithinBound, &[Need::Steps, Need::IdleBeside(PEAKED)])
-        .default(|| Switch::from(Sampling::default().probe).to_string()),
+        .default(default_probe),
     scene("voxels", How, &[])
         .default(text::<Storage>),
 
@@ -301,6 +303,11 @@ fn default_quadrature() -> String {
          {MANY_SAMPLES} samples per ray",
         Quadrature::default()
     )
+}
+
+fn default_probe() -> String {
+    let probe = Switch::from(Sampling::default().probe);
+    format!("{probe}; off with --recon {}", Reconstruction::Adaptive)
 }
 
 fn default_refill() -> String {

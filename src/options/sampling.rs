@@ -5,13 +5,14 @@ use super::group::group;
 use super::text_form::text_form;
 use crate::error::Result;
 use crate::scene::{
-    AntiAliasing, Filter, Mode, Refill, Sampling, SamplingMethod, ScreenError, Sparse, SparseGrid,
-    StepVoxels, Storage, Traverse,
+    AntiAliasing, Filter, Mode, Reconstruction, Refill, Sampling, SamplingMethod, ScreenError,
+    Sparse, SparseGrid, StepVoxels, Storage, Traverse,
 };
 
 text_form!(
     AntiAliasing,
     Filter,
+    Reconstruction,
     Refill,
     SamplingMethod,
     ScreenError,
@@ -38,6 +39,11 @@ group! {
         /// The field between voxel centres: nearest or linear
         #[arg(long, value_name = "nearest|linear")]
         filter: Filter,
+
+        /// Where the filter is applied: full, at every sample; or adaptive, at hits, the march comparing the
+        /// nearest voxels with the iso value
+        #[arg(long, value_name = "adaptive|full")]
+        recon: Reconstruction,
 
         /// How empty space is skipped: uniform, kd-restart, hierarchical, revelles or distance; never
         /// changes the picture
@@ -87,9 +93,9 @@ group! {
 }
 
 impl SamplingOptions {
-    /// Makes the sampling by this method, and the options that make the same: exact sampling takes no steps
-    /// and has none.
-    pub(super) fn resolve(self, method: SamplingMethod) -> (Sampling, Self) {
+    /// Makes a mode's sampling by this method, and the options that make the same: exact sampling takes no
+    /// steps and has none.
+    pub(super) fn resolve(self, method: SamplingMethod, mode: Mode) -> (Sampling, Self) {
         let default = Sampling::default();
         let anti_aliasing = self.aa.unwrap_or_default();
         let (sparse, refill, screen_error) = (self.sparse, self.refill, self.screen_error);
@@ -98,16 +104,21 @@ impl SamplingOptions {
             SamplingMethod::Exact => Self {
                 step: None,
                 probe: None,
+                recon: None,
                 ..self
             },
         };
+        let recon = given.recon.unwrap_or(default.recon);
+        // Without the field's slopes there is nothing to search by.
+        let probe = default.probe && recon == Reconstruction::Full;
         let sampling = Sampling {
             method,
             step: given.step.unwrap_or(default.step),
             filter: given.filter.unwrap_or(default.filter),
+            recon,
             traverse: given.traverse.unwrap_or(default.traverse),
             skip: given.skip.map_or(default.skip, Switch::is_on),
-            probe: given.probe.map_or(default.probe, Switch::is_on),
+            probe: given.probe.map_or(probe, Switch::is_on),
             voxels: given.voxels.unwrap_or(default.voxels),
         };
         let is_fixed = method == SamplingMethod::Fixed;
@@ -115,6 +126,7 @@ impl SamplingOptions {
             sampling: Some(method),
             step: is_fixed.then_some(sampling.step),
             filter: Some(sampling.filter),
+            recon: (is_fixed && mode == Mode::Iso).then_some(recon),
             traverse: Some(sampling.traverse),
             skip: Some(sampling.skip.into()),
             probe: is_fixed.then_some(sampling.probe.into()),

@@ -23,6 +23,15 @@ pub struct FirstCrossing {
     pub certificate: Certificate,
 }
 
+/// The first crossings of rays, and what they cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimedCrossings {
+    /// One for each ray, in their order.
+    pub crossings: Vec<FirstCrossing>,
+    /// The time of the cast on the device's clock, ms: without uploads, and without finding what can be left out.
+    pub device_ms: f64,
+}
+
 /// Casts rays on a device; builds each variant once.
 pub struct RayCaster<'a> {
     device: &'a Device,
@@ -53,6 +62,22 @@ impl<'a> RayCaster<'a> {
         caps: bool,
         rays: &[IndexRay],
     ) -> Result<Vec<FirstCrossing>> {
+        let cast = self.cast_timed(volume, octree, iso, caps, rays)?;
+        Ok(cast.crossings)
+    }
+
+    /// Casts rays as [`RayCaster::cast`] does, and says how long the device took.
+    ///
+    /// # Errors
+    /// The device fails or has no room; no rays.
+    pub fn cast_timed(
+        &mut self,
+        volume: &Volume,
+        octree: &Octree,
+        iso: f64,
+        caps: bool,
+        rays: &[IndexRay],
+    ) -> Result<TimedCrossings> {
         let (device, sampling) = (self.device, Sampling::default());
         let mut held = HeldVolume::default();
         let (on_device, voxels) = held.upload(device, volume, octree, sampling.voxels)?;
@@ -89,8 +114,11 @@ impl<'a> RayCaster<'a> {
         let cast = surface_cast(iso, caps, &sampling);
         let mut hit = run.plane("hits", f32::INFINITY)?;
         exact_surface(&mut run, inputs, &cast, &mut hit, &mut layers)?;
-        timings.finish(device)?;
-        found(device, &hit, &layers)
+        let device_ms = timings.finish(device)?.device_ms;
+        Ok(TimedCrossings {
+            crossings: found(device, &hit, &layers)?,
+            device_ms,
+        })
     }
 }
 

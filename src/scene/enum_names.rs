@@ -1,8 +1,8 @@
 //! The names of a scene's choices, by which users write them.
 
 use super::{
-    Filter, HomogeneityRule, Mode, QuadratureMethod, Refill, RefineMethod, SamplingMethod, Storage,
-    Traverse, View,
+    Filter, HomogeneityRule, Mode, QuadratureMethod, Reconstruction, Refill, RefineMethod,
+    SamplingMethod, Storage, Traverse, View,
 };
 
 /// Gives an enum its names: `name`, `Display`, and `FromStr`, for which upper and lower case are alike.
@@ -51,6 +51,7 @@ enum_names!(View, "a view": Anterior = "anterior", Posterior = "posterior", Left
     Right = "right", Superior = "superior", Inferior = "inferior");
 
 enum_names!(Filter, "a filter": Nearest = "nearest", Linear = "linear");
+enum_names!(Reconstruction, "a reconstruction": Full = "full", Adaptive = "adaptive");
 enum_names!(RefineMethod, "a refiner": None = "none", Bisection = "bisection",
     RegulaFalsi = "regula-falsi", Illinois = "illinois", Newton = "newton");
 enum_names!(QuadratureMethod, "a quadrature": Riemann = "riemann", Midpoint = "midpoint",

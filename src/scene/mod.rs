@@ -42,7 +42,9 @@ pub use quantities::{
     Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, ScreenError,
     Shininess, StepVoxels, Termination,
 };
-pub use sampling::{Filter, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse};
+pub use sampling::{
+    Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
+};
 pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
 pub use tone::Tone;

@@ -15,6 +15,18 @@ pub enum Filter {
     Linear,
 }
 
+/// Where on a ray that looks for a surface at fixed steps the filter's value is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Reconstruction {
+    /// At every sample.
+    #[default]
+    Full,
+    /// At the hit alone: samples are the nearest voxels' values, and where two of them lie on two sides of the iso
+    /// value the crossing near them is found by the filter (a cheaper filter where accuracy is not needed:
+    /// Lesar et al. 2015, §IV).
+    Adaptive,
+}
+
 /// How nodes that cannot contribute are skipped. All give the same picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Traverse {
@@ -206,6 +218,8 @@ pub struct Sampling {
     pub step: StepVoxels,
     /// The reconstruction filter.
     pub filter: Filter,
+    /// Where it is applied; surfaces at fixed steps alone make use of it, and without a probe.
+    pub recon: Reconstruction,
     /// How nodes that cannot contribute are skipped.
     pub traverse: Traverse,
     /// Whether nodes that cannot contribute are skipped; never changes the picture.
@@ -223,6 +237,7 @@ impl Default for Sampling {
             method: SamplingMethod::default(),
             step: StepVoxels::default(),
             filter: Filter::Linear,
+            recon: Reconstruction::default(),
             traverse: Traverse::Distance,
             skip: true,
             probe: true,

@@ -6,10 +6,12 @@ use crate::common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 19] = [
+const EXPERIMENTS: [&str; 21] = [
     "vessels",
     "pareto",
     "speed",
+    "sparse",
+    "sparse-rays",
     "traversals",
     "convergence",
     "rays",

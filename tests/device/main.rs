@@ -15,6 +15,7 @@ mod invariance;
 mod metamorphic;
 mod quadrature;
 mod ray_sources;
+mod recon;
 mod refinement;
 mod sampling_alone;
 mod screen_error;

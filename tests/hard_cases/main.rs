@@ -9,6 +9,7 @@ mod emission;
 mod isosurface;
 mod limits;
 mod mutant;
+mod pixels;
 mod rays;
 mod trial;
 mod volumes;
@@ -21,6 +22,7 @@ const TESTS: &[&[&str]] = &[
     isosurface::CASES,
     emission::CASES,
     volumes::CASES,
+    pixels::CASES,
 ];
 
 #[test]

@@ -393,7 +393,13 @@ fn the_switches_are_read_from_the_kernels() {
     };
     assert_eq!(
         of("pass/cast_surface.cl"),
-        named(&[("COUNTERS", 2), ("LANES", 3), ("LAYERS", 2), ("RAYS", 4)])
+        named(&[
+            ("COUNTERS", 2),
+            ("LANES", 3),
+            ("LAYERS", 2),
+            ("NEAREST_MARCH", 2),
+            ("RAYS", 4)
+        ])
     );
     assert_eq!(
         of("pass/cast_maximum.cl"),

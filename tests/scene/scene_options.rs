@@ -2,7 +2,9 @@
 
 use angioray::extent::{ImageSize, Range};
 use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
-use angioray::scene::{Gradient, Lens, Picture, Precomputed, Projection};
+use angioray::scene::{
+    Gradient, Lens, Picture, Precomputed, Projection, Reconstruction, SamplingMethod,
+};
 use angioray::{Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
@@ -356,6 +358,16 @@ fn nonsense_is_refused_with_a_reason() {
         ("eye = [1, 2, 3]\nview = 'left'", "cannot be combined"),
         ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "cannot be combined"),
         ("carm = 'LAO 10'\nazimuth = 10", "cannot be combined"),
+        (
+            "mode = 'mip'\nrecon = 'adaptive'",
+            "only a surface has a hit at which to change the filter",
+        ),
+        ("sampling = 'exact'\nrecon = 'adaptive'", "takes no samples"),
+        (
+            "recon = 'adaptive'\nfilter = 'nearest'",
+            "of which every sample already is",
+        ),
+        ("recon = 'adaptive'\nprobe = 'on'", "no slope"),
         ("up = [0, 1, 0]", "'up' can only be given with 'eye'"),
         ("eye = [0, 2e12, 0]", "'eye' is too far away"),
     ] {
@@ -368,6 +380,8 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'iso'\ncaps = true",
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
+        "sampling = 'fixed'\nrecon = 'adaptive'\nprobe = 'off'",
+        "recon = 'full'\nfilter = 'nearest'\nprobe = 'on'",
         "carm = 'LAO 10'\nview = 'anterior'",
         "eye = [1, 2, 3]\nzoom = 2\nroll = 10\nazimuth = 5",
         "eye = [0, 1e12, 0]",
@@ -616,4 +630,26 @@ fn there_are_64_clip_planes_at_most() {
     let error = planes(65).map(|_| ()).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert_eq!(error.to_string(), "65 clip planes: there may be at most 64");
+}
+
+#[test]
+fn the_filter_at_hits_alone_implies_steps_without_a_probe_and_gives_way_to_exact_sampling() {
+    let resolved = |text: &str| file(text).resolve(&SUBJECT).unwrap();
+    let adaptive = resolved("recon = 'adaptive'");
+    let sampling = adaptive.scene.sampling;
+    assert_eq!(sampling.method, SamplingMethod::Fixed);
+    assert_eq!(sampling.recon, Reconstruction::Adaptive);
+    assert!(!sampling.probe);
+    let toml = adaptive.options.to_toml().unwrap();
+    assert!(toml.contains("recon = \"adaptive\""), "{toml}");
+    assert_eq!(resolved(&toml).scene, adaptive.scene);
+    // The controls: without it there is a probe, and other modes do not speak of it.
+    assert!(resolved("sampling = 'fixed'").scene.sampling.probe);
+    let mip = resolved("mode = 'mip'\nsampling = 'fixed'");
+    assert!(!mip.options.to_toml().unwrap().contains("recon"));
+    let exact = file("sampling = 'exact'").over(file("recon = 'adaptive'"));
+    assert_eq!(
+        resolved(&exact.to_toml().unwrap()).scene.sampling.method,
+        SamplingMethod::Exact
+    );
 }

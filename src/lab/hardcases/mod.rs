@@ -8,7 +8,7 @@ mod scenes;
 mod volumes;
 
 pub use case::{HardCase, HardScene, HardVolume};
-pub use volumes::orientation_of;
+pub use volumes::{LINE_RADIUS_MM, line_axes, orientation_of};
 
 use crate::error::{Error, Result};
 
@@ -74,7 +74,7 @@ mod tests {
         assert!(numbers.is_sorted());
         numbers.dedup();
         // Number 6, that every loop ends, is about all rays and all volumes.
-        let expected: Vec<u32> = (1..=26).filter(|&n| n != 6).collect();
+        let expected: Vec<u32> = (1..=27).filter(|&n| n != 6).collect();
         assert_eq!(numbers, expected);
         let count = names.len();
         names.sort_unstable();

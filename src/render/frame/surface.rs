@@ -80,10 +80,7 @@ impl Schedule for SurfacePasses<'_> {
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         let Self { view, .. } = *self;
-        let find = match view.scene.sampling.method {
-            SamplingMethod::Fixed => cast_surface,
-            SamplingMethod::Exact => exact_surface,
-        };
+        let sampling = &view.scene.sampling;
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
@@ -92,7 +89,13 @@ impl Schedule for SurfacePasses<'_> {
         else {
             return Ok(());
         };
-        find(run, view.inputs, &self.cast, hit_mm, layers)?;
+        let (inputs, cast) = (view.inputs, &self.cast);
+        match sampling.method {
+            SamplingMethod::Fixed => {
+                cast_surface(run, inputs, cast, sampling.recon, hit_mm, layers)?
+            }
+            SamplingMethod::Exact => exact_surface(run, inputs, cast, hit_mm, layers)?,
+        }
         self.show(run, planes)
     }
 

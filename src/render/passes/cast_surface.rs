@@ -5,16 +5,18 @@ use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::SurfaceCast;
 use crate::render::resources::{DeviceGradient, DeviceLayers};
+use crate::scene::Reconstruction;
 
 use super::inputs::CastInputs;
 use super::run::Run;
 
 /// The first point of each ray where Φ − iso changes sign: `hit_mm` from the base plane, its kind, depth (mm
-/// from the eye) and value (stored units).
+/// from the eye) and value (stored units). By `recon` samples on the way are the field's or the nearest voxels'.
 pub fn cast_surface(
     run: &mut Run,
     inputs: CastInputs,
     cast: &SurfaceCast,
+    recon: Reconstruction,
     hit_mm: &mut Buffer<f32>,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
@@ -22,6 +24,10 @@ pub fn cast_surface(
     let defines = run
         .defines()
         .with("LAYERS", has(Layer::Depth))
+        .with(
+            "NEAREST_MARCH",
+            u32::from(recon == Reconstruction::Adaptive),
+        )
         .with("COUNTERS", has(Layer::Steps));
     let args = inputs
         .along_rays(inputs.by_cells(run), run, DeviceGradient::NONE)

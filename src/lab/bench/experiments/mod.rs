@@ -15,6 +15,8 @@ mod ruijters_2006_termination;
 mod scharsach_2005_figure_4;
 mod scharsach_2005_table_1;
 mod scharsach_2005_table_2;
+mod sparse;
+mod sparse_rays;
 mod speed;
 mod tolerance;
 mod traversals;
@@ -28,9 +30,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
     vessels::EXPERIMENT,
     pareto::EXPERIMENT,
     speed::EXPERIMENT,
+    sparse::EXPERIMENT,
     traversals::EXPERIMENT,
     convergence::EXPERIMENT,
     rays::EXPERIMENT,
+    sparse_rays::EXPERIMENT,
     gradients::EXPERIMENT,
     tolerance::EXPERIMENT,
     scharsach_2005_table_1::EXPERIMENT,

@@ -4,7 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::octree::Leaf;
-use crate::scene::{Emission, Picture, Refine, Sampling, SamplingMethod, Scene, StepVoxels};
+use crate::scene::{
+    Emission, Picture, Refill, Refine, Sampling, SamplingMethod, Scene, Sparse, SparseGrid,
+    StepVoxels,
+};
 
 /// A picture, and how it is made.
 pub struct Case {
@@ -47,9 +50,11 @@ impl Case {
         self
     }
 
-    /// The scene as the reference renders it: what is seen, without how rays are followed.
+    /// The scene as the reference renders it: what is seen, without how rays are followed and through which
+    /// pixels.
     pub(super) fn reference_scene(&self) -> Scene {
         let mut scene = self.scene.clone();
+        scene.sparse = None;
         scene.sampling = Sampling {
             filter: scene.sampling.filter,
             ..Sampling::default()
@@ -80,6 +85,22 @@ pub fn plain_steps(scene: &Scene, step_voxels: f64, refine: Refine) -> Result<Sc
     if let Picture::Surface { refine: of, .. } = &mut scene.picture {
         *of = refine;
     }
+    Ok(scene)
+}
+
+/// The scene cast sparsely as in Lesar et al. 2015, §III-D: every fourth pixel along each axis, and the blocks whose
+/// corners differ.
+///
+/// # Errors
+/// A grid that there is not, which tests rule out.
+pub fn sparsely(mut scene: Scene) -> Result<Scene> {
+    let grid = SparseGrid::new(4, None)?;
+    scene.sparse = Some(Sparse::new(
+        Some(grid),
+        Some(Refill::Gradient),
+        None,
+        scene.picture.mode(),
+    )?);
     Ok(scene)
 }
 

@@ -7,7 +7,7 @@ mod measurement;
 mod plot;
 mod table;
 
-pub use case::{Case, Paper, plain_steps, unskipped};
+pub use case::{Case, Paper, plain_steps, sparsely, unskipped};
 pub use lazy_dataset::LazyDataset;
 pub use measurement::{Measurement, SurfaceError, measure};
 pub use plot::{axis, section};

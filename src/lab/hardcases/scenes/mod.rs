@@ -3,5 +3,6 @@
 pub mod emission;
 pub mod isosurface;
 pub mod kinds;
+pub mod pixels;
 pub mod rays;
 mod view;

@@ -4,19 +4,22 @@ mod emission;
 mod grid;
 mod isosurface;
 mod kinds;
+mod pixels;
 mod rays;
 
 pub use kinds::orientation_of;
+pub use pixels::{LINE_RADIUS_MM, line_axes};
 
 use super::HardCase;
 use crate::volume::Geometry;
 
 /// All cases, by number.
-pub(super) const CASES: [&[HardCase]; 4] = [
+pub(super) const CASES: [&[HardCase]; 5] = [
     rays::CASES,
     isosurface::CASES,
     emission::CASES,
     kinds::CASES,
+    pixels::CASES,
 ];
 
 /// Spacing 1 mm, origin 0, the world's axes: world and index space are one.

@@ -1,10 +1,10 @@
-// Of the pixels that are marked to be cast next, leaves those marked that may show more to many rays than to
-// one: those of which one of the four beside them met something else, and those whose mean is estimated to differ
-// from what is seen in their centre. With EMPTY_KNOWN, where all pixels that are proven to show nothing are
-// unmarked already, those stay marked too that met nothing.
+// Of the pixels that are marked as cast, marks those to be cast next that may show more to many rays than to one: those of
+// which one of the four beside them met something else, or, with WITH_HITS, something much nearer or farther; and those whose
+// mean is estimated to differ from what is seen in their centre. The others become MARK_FILLED.
 //
 // The mean of a smooth picture over a pixel differs from its centre by a 24th of the sum of its two second
-// derivatives; their differences are taken for them. The threshold is that of channels, sRGB-encoded, and of opacity.
+// derivatives; differences of neighbours are taken for them, and of the two the greater counts. The threshold is that of
+// channels, sRGB-encoded, and of opacity.
 //
 // Reads what one ray a pixel saw. Writes cast and, with COVERAGE, the share of that ray that met something.
 #include "lib/ray/pixels.clh"
@@ -16,59 +16,81 @@
 #else
 #define SEEN_KIND
 #endif
+#if WITH_HITS
+#define SEEN_HITS , float2 footprint, const global float *hit_mm
+#else
+#define SEEN_HITS
+#endif
 #if COVERAGE
 #define COVERAGE_PLANE , global float *coverage
 #else
 #define COVERAGE_PLANE
 #endif
 
-// How much a channel's mean is estimated to differ, encoded.
-static inline Floats change_of(Floats center, Floats around)
+// A hit is much nearer or farther than that of a ray beside it where a surface between them would rise so steeply: by how
+// many of the rays' distances.
+#define STEEP 6.0f
+
+// How much a channel's mean is estimated to differ, encoded, by the two pixels beside it along one axis.
+static inline Floats change_of(Floats center, Floats beside)
 {
-    Floats mean = center + (around - 4.0f * center) * (1.0f / 24.0f);
+    Floats mean = center + (beside - 2.0f * center) * (1.0f / 24.0f);
     return fabs(srgb_from_linear(max_of(mean, FLOATS(0.0f))) - srgb_from_linear(max_of(center, FLOATS(0.0f))));
 }
 
-kernel void mark_edges(RayGrid rays, float threshold, float opaque_from, const global float4 *color SEEN_KIND, global uint *cast COVERAGE_PLANE)
+// The same of all channels and of opacity: the greatest.
+static inline Floats change(Floats4 center, Floats4 beside)
+{
+    Floats opacity = fabs(beside.w - 2.0f * center.w) * (1.0f / 24.0f);
+    return max_of(max_of(change_of(center.x, beside.x), change_of(center.y, beside.y)), max_of(change_of(center.z, beside.z), opacity));
+}
+
+kernel void mark_edges(RayGrid rays, float threshold, float opaque_from, const global float4 *color SEEN_KIND SEEN_HITS,
+                       global uint *cast COVERAGE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
-    Mask marked = pixels.inside & read_ints(cast, pixels) == (int)MARK_NEXT;
-#if COVERAGE || WITH_KIND
+    Mask marked = pixels.inside & read_ints(cast, pixels) == (int)MARK_CAST;
 #if WITH_KIND
     Ints here = read_ints(kind, pixels);
+#endif
+#if COVERAGE
+#if WITH_KIND
     Mask met = here != KIND_NOTHING;
 #else
     Mask met = read_float4(color, pixels).w >= opaque_from;
 #endif
-#endif
-#if COVERAGE
     Floats covered = met ? FLOATS(1.0f) : FLOATS(0.0f);
     SCATTER(pixels.inside, coverage, pixels.index, covered);
 #endif
     if (!ANY(marked))
         return;
     Floats4 center = read_float4(color, pixels);
-    Floats4 around = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
-    Mask stays = NO_LANE;
-#if EMPTY_KNOWN
-    stays = marked & !met;
+#if WITH_HITS
+    Floats t = read_floats(hit_mm, pixels);
 #endif
-    for (int side = 0; side < 4; side++) {
-        Ints i = clamp_ints(pixels.i + (side == 0 ? -1 : side == 1 ? 1 : 0), INTS(0), INTS((int)rays.width - 1));
-        Ints j = clamp_ints(pixels.j + (side == 2 ? -1 : side == 3 ? 1 : 0), INTS(0), INTS((int)rays.height - 1));
-        Ints place = j * (int)rays.width + i;
-        Floats4 beside = gather_float4(color, place);
-        around.x += beside.x;
-        around.y += beside.y;
-        around.z += beside.z;
-        around.w += beside.w;
+    Mask differs = NO_LANE;
+    for (int axis = 0; axis < 2; axis++) {
+        Floats4 beside = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
+        for (int side = -1; side <= 1; side += 2) {
+            Ints i = clamp_ints(pixels.i + (axis == 0 ? side : 0), INTS(0), INTS((int)rays.width - 1));
+            Ints j = clamp_ints(pixels.j + (axis == 1 ? side : 0), INTS(0), INTS((int)rays.height - 1));
+            Ints place = j * (int)rays.width + i;
+            Floats4 one = gather_float4(color, place);
+            beside.x += one.x;
+            beside.y += one.y;
+            beside.z += one.z;
+            beside.w += one.w;
 #if WITH_KIND
-        stays = stays | (marked & GATHER(Ints, kind, place) != here);
+            differs = differs | GATHER(Ints, kind, place) != here;
 #endif
+#if WITH_HITS
+            Floats there = GATHER(Floats, hit_mm, place);
+            // Where either met nothing, the kinds differ.
+            differs = differs | fabs(there - t) > STEEP * (footprint.x + footprint.y * min_of(there, t));
+#endif
+        }
+        differs = differs | change(center, beside) > threshold;
     }
-    Floats opacity = fabs(around.w - 4.0f * center.w) * (1.0f / 24.0f);
-    Floats change = max_of(max_of(change_of(center.x, around.x), change_of(center.y, around.y)), max_of(change_of(center.z, around.z), opacity));
-    stays = stays | (marked & change > threshold);
-    Mask unmarked = marked & !stays;
-    SCATTER(unmarked, cast, pixels.index, INTS((int)MARK_FILLED));
+    Ints mark = differs ? INTS((int)MARK_NEXT) : INTS((int)MARK_FILLED);
+    SCATTER(marked, cast, pixels.index, mark);
 }

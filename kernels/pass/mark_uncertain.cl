@@ -5,11 +5,13 @@
 // centre.
 //
 // Large blocks are tested first; one that is not proven is parted into four, down to blocks of `spacing` pixels. Those of up
-// to `widest` may be interpolated. With HITS_KNOWN, where the smallest are single pixels, none is tested whose ray met something or one
-// beside it.
+// to `widest` may be interpolated. With SEEN, where the smallest are single pixels that have had one ray, those are not tested
+// that met something, nor of a surface those beside them: they become MARK_CAST. With an iso value of +inf it is a medium that
+// may show: all cells count whose bits are set.
 //
 // A work-item tests a square of `spacing` << `block_levels` pixels a side. Reads the voxels and per octree node its
-// CLASS_*, a bit per cell that the surface may cross, the clip planes (index space), and with HITS_KNOWN kind. Writes cast.
+// CLASS_*, a bit per cell that the surface may cross, the clip planes (index space), and kind (SEEN_KINDS) or color
+// (SEEN_OPACITIES). Writes cast.
 #include "lib/ray/block_walk.clh"
 #include "lib/skip/smooth_surface.clh"
 
@@ -17,8 +19,8 @@
 #error "the rays at a block's corners stand in lanes, two times four: LANES is 8"
 #endif
 
-#if HITS_KNOWN
-#define KIND_PLANE , const global uint *kind
+#if SEEN == SEEN_KINDS
+#define SEEN_PLANE , const global uint *kind
 
 // Whether a pixel's ray, or one of the four beside it, met something.
 static inline bool is_beside_hit(RayGrid rays, int x, int y, const global uint *kind)
@@ -31,15 +33,20 @@ static inline bool is_beside_hit(RayGrid rays, int x, int y, const global uint *
     return kind[row + x] != KIND_NOTHING || kind[row + left] != KIND_NOTHING || kind[row + right] != KIND_NOTHING
         || kind[above + x] != KIND_NOTHING || kind[below + x] != KIND_NOTHING;
 }
-#define IS_KNOWN(block) ((block).side == 1 && is_beside_hit(rays, (block).x, (block).y, kind))
+#define IS_SEEN(block) ((block).side == 1 && is_beside_hit(rays, (block).x, (block).y, kind))
+#elif SEEN == SEEN_OPACITIES
+#define SEEN_PLANE , float opaque_from, const global float4 *color
+#define IS_SEEN(block) ((block).side == 1 && color[(block).y * (int)rays.width + (block).x].w >= opaque_from)
 #else
-#define KIND_PLANE
-#define IS_KNOWN(block) false
+#define SEEN_PLANE
+#define IS_SEEN(block) false
 #endif
 
-// Whether the field is below iso in all slices of a region, within the frustum.
+// Whether the field is below iso in all slices of a region, within the frustum; of a medium that is not known.
 static inline bool is_below(VOXELS voxels, const Packet *packet, PacketRegion region, float iso)
 {
+    if (!(iso < INFINITY))
+        return false;
     float below = iso - fabs(iso) * 1e-6f;
     FieldRange range = {-INFINITY, below};
     for (int slice = region.low; slice < region.high && range.max == below; slice++)
@@ -90,7 +97,7 @@ static inline bool is_smooth(VOXELS voxels, const SkipGrid *grid, ClipPlanes cli
 #endif
 
 kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, uint widest,
-                           float margin, float max_error_mm, float iso KIND_PLANE, global uint *cast)
+                           float margin, float max_error_mm, float iso SEEN_PLANE, global uint *cast)
 {
     SkipGrid grid = skip_by_class(node_class, levels, cells);
     BlockWalk walk = block_walk(spacing, block_levels);
@@ -103,7 +110,8 @@ kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid
     Block block;
     while (block_next(&walk, rays, &block)) {
         SliceRange met;
-        bool may_show = IS_KNOWN(block)
+        bool seen = IS_SEEN(block);
+        bool may_show = seen
                      || meets(voxels, &grid, volume, iso, corner_rays(rays, block, margin), walk.level, known[walk.level], &met);
         bool smooth = false;
 #if SURFACES
@@ -119,7 +127,7 @@ kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid
             known[walk.level] = met;
             continue;
         } else {
-            mark_block(rays, block, may_show ? MARK_NEXT : MARK_FILLED, cast);
+            mark_block(rays, block, seen ? MARK_CAST : may_show ? MARK_NEXT : MARK_FILLED, cast);
         }
         block_pass(&walk);
     }

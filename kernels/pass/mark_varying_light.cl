@@ -112,7 +112,7 @@ kernel void mark_varying_light(SKIP_BY_CLASS, const global float4 *leaf_light, C
             }
             Floats length = 1.0f / (fabs(lines.main.dir) * unit_length_mm);
             float2 per_slice = (float2)(MIN_LANE(length), MAX_LANE(length));
-            bool is_cut = clip.count > 0u || begins_inside(&packet, &lines);
+            bool is_cut = clip.count > 0u || frustum_begins_inside(&packet, &lines);
             LightRange light = frustum_light(packet, &grid, leaf_light, per_slice, reflects, is_cut);
             float4 differ = light.high - light.low;
             even = fmax(fmax(differ.x, differ.y), fmax(differ.z, differ.w)) <= max_error;

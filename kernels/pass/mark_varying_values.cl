@@ -51,7 +51,7 @@ kernel void mark_varying_values(VOXELS voxels, SKIP_BY_RANGE, CLIP_PLANES, Volum
             block_pass(&walk);
             continue;
         }
-        frustum.is_cut = clip.count > 0u || begins_inside(&frustum.packet, &lines);
+        frustum.is_cut = clip.count > 0u || frustum_begins_inside(&frustum.packet, &lines);
         bool even = known && all_meet(volume, clip, corners) && is_even(voxels, &grid, &frustum, cast_by, max_error, walk.level == 0);
         if (!even && walk.level > 0) {
             walk.level--;

@@ -73,6 +73,7 @@ const FILES: &[(&str, &str)] = embedded![
     "pass/list_marked.cl",
     "pass/mark_checked.cl",
     "pass/mark_edges.cl",
+    "pass/mark_exceeding.cl",
     "pass/mark_grid.cl",
     "pass/mark_refill.cl",
     "pass/mark_uncertain.cl",

@@ -87,7 +87,7 @@ impl<'a> RayCaster<'a> {
             device,
             volume,
             octree,
-            OccupancyTables::of(&sampling, false),
+            OccupancyTables::of(&sampling),
             criterion,
         )?;
         let world_from_index = volume.geometry().world_from_index();

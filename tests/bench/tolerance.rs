@@ -242,7 +242,7 @@ fn what_was_chosen_is_reported_and_the_stored_scene_gives_the_same_picture() {
     assert!(stats_of_bound["upper"].as_f64().unwrap() <= 0.01);
     let chosen = stats_of_bound["chosen"].as_str().unwrap();
     let tried = stats_of_bound["tried"].as_array().unwrap();
-    let all = candidates(Mode::Mip, 0.01).unwrap().concat();
+    let all = candidates(Mode::Mip, 0.01, true).unwrap().concat();
     assert!((1..=all.len()).contains(&tried.len()), "{}", tried.len());
     assert!(
         tried.iter().any(|one| one["setting"] == chosen),

@@ -407,7 +407,7 @@ fn nothing_else_changes_a_bit_of_a_sparse_picture() {
             "{rule:?}"
         );
         // The control: another spacing is another picture.
-        let other = with(&scene, Sparse { spacing: 8, ..rule });
+        let other = with(&scene, Sparse { spacing: 2, ..rule });
         assert!(
             !base.bit_equal(&picture(&octree, Options::default(), &other)),
             "{rule:?}"

@@ -12,6 +12,8 @@ const REFINERS: [&str; 2] = ["none", "regula-falsi:5"];
 const RULES: [&str; 4] = ["riemann", "midpoint", "simpson", "preintegrated"];
 /// The error bounds of adaptive quadrature, in linear light.
 const BOUNDS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+/// The spacings of grids between which pixels are filled until nothing differs.
+const FLOODED: [u32; 3] = [8, 4, 2];
 
 /// The greatest slope of the sRGB curve (IEC 61966-2-1), which is at black: what a difference in linear
 /// light is at most multiplied by on its way to the display.
@@ -22,11 +24,12 @@ pub type Chain = Vec<Setting>;
 
 /// Every candidate of a mode, the last one of the last chain the surest: the exact cast; of emission
 /// and absorption, whose exact cast has an adaptive bound, the loosest of the adaptive
-/// bounds that by itself keeps `limit`, a difference of displayed colours 0..1.
+/// bounds that by itself keeps `limit`, a difference of displayed colours 0..1. Pixels may be left out where each has
+/// `one_ray`.
 ///
 /// # Errors
 /// A text of this module does not parse, which tests rule out.
-pub fn candidates(mode: Mode, limit: f64) -> Result<Vec<Chain>> {
+pub fn candidates(mode: Mode, limit: f64, one_ray: bool) -> Result<Vec<Chain>> {
     let mut chains: Vec<Vec<String>> = Vec::new();
     let mut by_step = |how: &str| {
         let at = |step| format!("step = {step}\n{how}");
@@ -52,7 +55,7 @@ pub fn candidates(mode: Mode, limit: f64) -> Result<Vec<Chain>> {
             }
         }
     }
-    chains.push(match mode {
+    let exact: Vec<String> = match mode {
         Mode::Dvr => {
             let keeps = |bound: &f64| MAX_SLOPE * bound <= limit;
             let loosest = BOUNDS.iter().position(keeps).unwrap_or(BOUNDS.len() - 1);
@@ -62,9 +65,25 @@ pub fn candidates(mode: Mode, limit: f64) -> Result<Vec<Chain>> {
                 .collect()
         }
         _ => vec!["sampling = 'exact'\n".into()],
-    });
+    };
+    if let Some(surest) = exact.last().filter(|_| one_ray) {
+        let flooded = |spacing| format!("{surest}sparse = {spacing}\nrefill = 'flood'\n");
+        let within = |error| format!("{surest}screen-error = {error}\n");
+        chains.push(FLOODED.into_iter().map(flooded).collect());
+        chains.push(screen_errors(mode).into_iter().map(within).collect());
+    }
+    chains.push(exact);
     let chain = |texts: Vec<String>| texts.iter().map(|text| named(text)).collect();
     chains.into_iter().map(chain).collect()
+}
+
+/// The errors within which pixels are filled: of a surface voxels of depth, of others shares of the range of values or
+/// of linear light.
+fn screen_errors(mode: Mode) -> [f64; 3] {
+    match mode {
+        Mode::Iso => [1.0, 0.2, 0.05],
+        _ => [0.05, 0.01, 0.002],
+    }
 }
 
 /// A setting called by its flags.
@@ -82,15 +101,15 @@ mod tests {
     #[test]
     fn all_suit_their_mode_and_the_last_one_takes_no_steps() {
         for (mode, lengths) in [
-            (Mode::Iso, vec![6, 6, 6, 6, 1]),
-            (Mode::Mip, vec![6, 6, 1]),
-            (Mode::Lmip, vec![6, 6, 1]),
-            (Mode::Minip, vec![6, 6, 1]),
-            (Mode::Mean, vec![6, 1]),
-            (Mode::Dvr, vec![6, 6, 6, 6, 4]),
+            (Mode::Iso, vec![6, 6, 6, 6, 3, 3, 1]),
+            (Mode::Mip, vec![6, 6, 3, 3, 1]),
+            (Mode::Lmip, vec![6, 6, 3, 3, 1]),
+            (Mode::Minip, vec![6, 6, 3, 3, 1]),
+            (Mode::Mean, vec![6, 3, 3, 1]),
+            (Mode::Dvr, vec![6, 6, 6, 6, 3, 3, 4]),
         ] {
             let base = SceneOptions::parse(&format!("mode = '{mode}'"), "base").unwrap();
-            let chains = candidates(mode, 1e-6).unwrap();
+            let chains = candidates(mode, 1e-6, true).unwrap();
             let found: Vec<usize> = chains.iter().map(Vec::len).collect();
             assert_eq!(found, lengths, "{mode}");
             let mut names = Vec::new();
@@ -99,7 +118,9 @@ mod tests {
                     let options = setting.over(&base).checked().unwrap();
                     let quad = options.picture.quad.map(|quad| quad.sampling());
                     let exact = options.sampling.sampling.or(quad) == Some(SamplingMethod::Exact);
-                    assert_eq!(exact, at == lengths.len() - 1, "{}", setting.name());
+                    assert_eq!(exact, at >= lengths.len() - 3, "{}", setting.name());
+                    let is_last = at == lengths.len() - 1;
+                    assert_eq!(exact && !is_sparse(&options), is_last, "{}", setting.name());
                     names.push(setting.name());
                 }
             }
@@ -110,10 +131,24 @@ mod tests {
         }
     }
 
+    fn is_sparse(options: &SceneOptions) -> bool {
+        options.sampling.sparse.is_some() || options.sampling.screen_error.is_some()
+    }
+
+    #[test]
+    fn no_pixel_is_left_out_where_each_has_many_rays() {
+        for mode in [Mode::Iso, Mode::Mip, Mode::Dvr] {
+            let few = candidates(mode, 1e-6, false).unwrap();
+            let all = candidates(mode, 1e-6, true).unwrap();
+            assert_eq!(few.len() + 2, all.len());
+            assert_eq!(few.last(), all.last());
+        }
+    }
+
     #[test]
     fn an_adaptive_bound_is_as_tight_as_the_limit_needs() {
         let surest = |limit| {
-            let chains = candidates(Mode::Dvr, limit).unwrap();
+            let chains = candidates(Mode::Dvr, limit, true).unwrap();
             chains.last().unwrap().last().unwrap().flags()
         };
         assert_eq!(surest(0.5), "--quad adaptive:0.01");

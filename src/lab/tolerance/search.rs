@@ -95,8 +95,9 @@ impl<'s, 'a> Search<'s, 'a> {
         task.bound.check(mode)?;
         let deviation = Deviation::new(task.bound, task.volume)?;
         let own = task.options.how().undecided();
+        let one_ray = (task.options.sampling.aa).is_none_or(|aa| aa.rays() == 1);
         let mut all = Vec::new();
-        for chain in candidates(mode, deviation.limit())? {
+        for chain in candidates(mode, deviation.limit(), one_ray)? {
             let finest = chain.len() - 1;
             for (at, setting) in chain.iter().enumerate() {
                 all.push(Candidate::new(setting, at, finest, &own, task)?);

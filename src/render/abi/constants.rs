@@ -152,6 +152,18 @@ kernel_enum! {
 }
 
 kernel_enum! {
+    /// By what is known which pixels' first rays met something.
+    pub enum SeenBy: u32 {
+        /// No pixel has had a ray.
+        Nothing => SEEN_NOTHING = 0,
+        /// A surface's kinds.
+        Kinds => SEEN_KINDS = 1,
+        /// A medium's opacities.
+        Opacities => SEEN_OPACITIES = 2,
+    }
+}
+
+kernel_enum! {
     /// The loops of the projections' casts.
     pub enum ProjectionLoop: u32 {
         /// The greatest or smallest value.
@@ -196,7 +208,7 @@ pub const CHECKED_OF: u32 = 256;
 pub const MARK_CAST: u32 = 1;
 
 /// The mark of a pixel that is cast next.
-const MARK_NEXT: u32 = 2;
+pub const MARK_NEXT: u32 = 2;
 
 /// The first of the marks of pixels that are interpolated in a block that has its corners to itself.
 const MARK_BLOCK: u32 = 3;
@@ -240,6 +252,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         Rays::CONSTANTS,
         ProjectionLoop::CONSTANTS,
         Filling::CONSTANTS,
+        SeenBy::CONSTANTS,
     ];
     tables.into_iter().flatten().copied()
 }

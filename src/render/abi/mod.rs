@@ -7,8 +7,8 @@ mod structs;
 mod variant;
 
 pub use constants::{
-    BRICK, CHECKED_OF, CLASS_BITS, Class, Filling, KernelEnum, LISTED_SQUARE, MARK_CAST,
-    MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, Rays, SMOOTH_PARTS,
+    BRICK, CHECKED_OF, CLASS_BITS, Class, Filling, KernelEnum, LISTED_SQUARE, MARK_CAST, MARK_NEXT,
+    MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, Rays, SMOOTH_PARTS, SeenBy,
 };
 pub use convert::{StoredIso, shading, step_mm, stored, stored_window, struct_layouts, tone};
 pub use lanes::Lanes;

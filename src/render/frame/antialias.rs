@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::frame::{Layer, Wanted};
 use crate::gpu::Buffer;
-use crate::render::abi::CHECKED_OF;
+use crate::render::abi::{CHECKED_OF, MARK_NEXT};
 use crate::render::occupancy::Criterion;
 use crate::render::passes::{
-    Blocks, FirstRays, Run, SampledPixels, SurfaceBlocks, compare_samples, mark_checked,
-    mark_edges, mark_grid, mark_uncertain, mean_of_samples,
+    Differs, FirstRays, Run, SampledPixels, compare_samples, mark_checked, mark_edges, mark_grid,
+    mean_of_samples,
 };
 use crate::render::resources::RaySource;
 use crate::scene::AntiAliasing;
@@ -24,7 +24,7 @@ use super::view::View;
 
 /// The greatest estimate of how much a pixel's mean differs from its centre, of sRGB-encoded channels, that does not
 /// ask for more rays.
-const THRESHOLD: f32 = 0.006;
+const THRESHOLD: f32 = 0.004;
 
 /// Casts the rays of every pixel, or where anti-aliasing is adaptive of those pixels that look unlike their
 /// neighbours or may show a surface that its first ray misses, and of a few of the others to tell how much those differ.
@@ -69,9 +69,9 @@ pub fn cast_antialiased(
         planes.rays_per_round.push(run.rays.places() as u64);
     }
     if aa.is_adaptive() {
-        mark_adaptively(run, view, &mut planes, &mut marks)?;
+        mark_adaptively(run, view, centers, &mut planes, &mut marks)?;
     } else {
-        mark_grid(run, 1, &mut marks)?;
+        mark_grid(run, 1, MARK_NEXT, &mut marks)?;
     }
     if let Some(listed) = listing.take(run, &mut marks)? {
         samples.show(run, &listed, &mut planes)?;
@@ -91,29 +91,21 @@ pub fn cast_antialiased(
 fn mark_adaptively(
     run: &mut Run,
     view: &View,
+    centers: &dyn Schedule,
     planes: &mut Planes,
     marks: &mut Buffer<u32>,
 ) -> Result<()> {
-    let criterion = view.inputs.occupancy.criterion();
-    match criterion {
-        Criterion::Iso(iso) => {
-            let pixels = SurfaceBlocks {
-                blocks: Blocks::PIXELS,
-                iso: iso.value,
-                margin: 0.5,
-                max_error_mm: None,
-                kinds: planes.layers.layer_counts(Layer::Kind),
-            };
-            mark_uncertain(run, view.inputs, &pixels, marks)?;
-        }
-        Criterion::Floor(_) | Criterion::Opacity(_) => mark_grid(run, 1, marks)?,
-    }
+    centers.mark_hidden(run, planes, marks)?;
     let seen = FirstRays {
         color: &planes.color,
         layers: &planes.layers,
-        empty_is_known: matches!(criterion, Criterion::Iso(_)),
+        hit_mm: planes.hit_mm.as_ref(),
     };
-    mark_edges(run, THRESHOLD, seen, marks, planes.coverage.as_mut())
+    let differs = Differs {
+        threshold: THRESHOLD,
+        footprint: view.footprint(run)?,
+    };
+    mark_edges(run, differs, seen, marks, planes.coverage.as_mut())
 }
 
 /// Marks a few of the pixels that have one ray alone, and of which it is not proven that many show the same.

@@ -6,7 +6,8 @@ use crate::gpu::Buffer;
 use crate::render::abi::{EmissionCast, KernelEnum, Shading, shading};
 use crate::render::occupancy::{Opacity, stand_ins};
 use crate::render::passes::{
-    Blocks, EmissionInputs, MediumBlocks, Run, adaptive_emission, cast_emission, mark_varying_light,
+    Blocks, EmissionInputs, MediumBlocks, Run, Seen, SurfaceBlocks, adaptive_emission,
+    cast_emission, mark_uncertain, mark_varying_light,
 };
 use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
 use crate::scene::{Emission, Phong, Quadrature, Rgb, ScreenError, TransferFunction, Traverse};
@@ -109,6 +110,17 @@ impl Schedule for EmissionPasses<'_> {
             reflects: self.reflects.map(|share| share as f32),
         };
         mark_varying_light(run, self.view.inputs, &asked, marks)
+    }
+
+    fn mark_hidden(&self, run: &mut Run, planes: &Planes, marks: &mut Buffer<u32>) -> Result<()> {
+        let asked = SurfaceBlocks {
+            blocks: Blocks::PIXELS,
+            iso: f32::INFINITY,
+            margin: 0.5,
+            max_error_mm: None,
+            seen: Some(Seen::Colors(&planes.color)),
+        };
+        mark_uncertain(run, self.view.inputs, &asked, marks)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::extent::ImageSize;
 use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
 use crate::render::abi::MARK_CAST;
-use crate::render::passes::{Run, Seen};
+use crate::render::passes::{Compared, Run};
 use crate::render::resources::DeviceLayers;
 use crate::scene::Emission;
 use crate::volume::Rescale;
@@ -65,8 +65,8 @@ impl Planes {
     }
 
     /// What pixels are compared by.
-    pub fn seen(&self) -> Seen<'_> {
-        Seen {
+    pub fn compared(&self) -> Compared<'_> {
+        Compared {
             color: &self.color,
             hit_mm: self.hit_mm.as_ref(),
             layers: Some(&self.layers),

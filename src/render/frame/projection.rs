@@ -3,17 +3,20 @@
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{ProjectionCast, ProjectionLoop, stored, stored_window};
+use crate::render::abi::{MARK_CAST, ProjectionCast, ProjectionLoop, stored, stored_window};
 use crate::render::occupancy::Floor;
 use crate::render::passes::{
-    Blocks, Fill, Run, cast_maximum, exact_projection, fill_uncast, mark_varying_values,
-    window_value,
+    Blocks, Fill, FirstValues, Run, cast_maximum, exact_projection, fill_uncast, mark_exceeding,
+    mark_grid, mark_varying_values, window_value,
 };
 use crate::scene::{Projection, SamplingMethod, ScreenError, Window};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
 use super::view::View;
+
+/// The share of the window by which what lies in a pixel may exceed what its first ray found, without asking for more.
+const HIDDEN: f32 = 0.05;
 
 /// Casts, then shows the values through the window.
 pub struct ProjectionPasses<'a> {
@@ -100,6 +103,21 @@ impl Schedule for ProjectionPasses<'_> {
             max_error as f32,
             marks,
         )
+    }
+
+    /// Nothing hides in a mean, to which what is thinner than a pixel adds next to nothing.
+    fn mark_hidden(&self, run: &mut Run, planes: &Planes, marks: &mut Buffer<u32>) -> Result<()> {
+        if self.which == ProjectionLoop::Mean {
+            return mark_grid(run, 1, MARK_CAST, marks);
+        }
+        let seen = FirstValues {
+            which: self.which,
+            cast: &self.cast,
+            layers: &planes.layers,
+        };
+        let [black, white] = self.window;
+        let tolerance = HIDDEN * (white - black).abs();
+        mark_exceeding(run, self.view.inputs, &seen, tolerance, marks)
     }
 
     /// Values are what is interpolated: their greys follow.

@@ -14,7 +14,7 @@ use crate::render::resources::{
     DeviceClip, DeviceDirections, DeviceGradient, DeviceVoxels, GradientFigures, HeldVolume,
     RaySource, needed_gradients,
 };
-use crate::scene::{Refill, SamplingMethod, Scene, Storage};
+use crate::scene::{SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
@@ -267,10 +267,7 @@ impl<'a> Renderer<'a> {
         let (device, volume, octree) = (self.device, self.volume, self.octree);
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, volume, octree);
-        let certified = scene
-            .sparse
-            .is_some_and(|sparse| sparse.refill == Refill::Certified);
-        let tables = OccupancyTables::of(&scene.sampling, certified);
+        let tables = OccupancyTables::of_scene(scene);
         let (occupancy, is_new) = self
             .occupancies
             .get(device, volume, octree, tables, criterion)?;

@@ -35,6 +35,14 @@ pub trait Schedule {
         marks: &mut Buffer<u32>,
     ) -> Result<()>;
 
+    /// Puts the launch at the end that marks what becomes of pixels that have had one ray, which the planes hold: to be cast next
+    /// where something may pass the pixel that the ray did not see, to be filled where it is proven that many would see
+    /// what it did, as cast where what is seen beside it decides.
+    ///
+    /// # Errors
+    /// As [`Run::squares`].
+    fn mark_hidden(&self, run: &mut Run, planes: &Planes, marks: &mut Buffer<u32>) -> Result<()>;
+
     /// Puts the launches at the end that fill the pixels that were not cast, which `marks` tells from others.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::Filling;
+use crate::render::abi::{Filling, MARK_NEXT};
 use crate::render::passes::{Blocks, Differs, Fill, Run, mark_grid, mark_refill};
 use crate::render::resources::RaySource;
 use crate::scene::{Refill, Sparse};
@@ -97,7 +97,9 @@ impl Rule<'_> {
             ..
         } = self.sparse;
         match self.sparse.refill {
-            Refill::None | Refill::Gradient | Refill::Flood => mark_grid(run, spacing, marks),
+            Refill::None | Refill::Gradient | Refill::Flood => {
+                mark_grid(run, spacing, MARK_NEXT, marks)
+            }
             Refill::Certified => {
                 let blocks = Blocks::up_to(spacing);
                 self.schedule
@@ -117,11 +119,11 @@ impl Rule<'_> {
             threshold: self.sparse.threshold as f32,
             footprint: self.view.footprint(run)?,
         };
-        let mut seen = planes.seen();
+        let mut compared = planes.compared();
         if !floods {
-            seen.layers = None; // the paper's method compares colours
+            compared.layers = None; // the paper's method compares colours
         }
-        mark_refill(run, self.sparse.spacing, floods, differs, seen, marks)
+        mark_refill(run, self.sparse.spacing, floods, differs, compared, marks)
     }
 
     /// How often pixels are marked again at most.

@@ -5,8 +5,8 @@ use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::{Filling, KernelEnum, Shading, StoredIso, SurfaceCast, shading};
 use crate::render::passes::{
-    Blocks, Run, SurfaceBlocks, cast_surface, exact_surface, interpolate_hits, mark_uncertain,
-    shade_surface, surface_normal,
+    Blocks, Run, Seen, SurfaceBlocks, cast_surface, exact_surface, interpolate_hits,
+    mark_uncertain, shade_surface, surface_normal,
 };
 use crate::scene::{Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError};
 
@@ -117,7 +117,19 @@ impl Schedule for SurfacePasses<'_> {
             margin: 0.0,
             max_error_mm: (is_solved && blocks.have_insides())
                 .then_some((error.get() * spacing_mm) as f32),
-            kinds: None,
+            seen: None,
+        };
+        mark_uncertain(run, self.view.inputs, &asked, marks)
+    }
+
+    fn mark_hidden(&self, run: &mut Run, planes: &Planes, marks: &mut Buffer<u32>) -> Result<()> {
+        let kinds = planes.layers.layer_counts(Layer::Kind);
+        let asked = SurfaceBlocks {
+            blocks: Blocks::PIXELS,
+            iso: self.cast.iso,
+            margin: 0.5,
+            max_error_mm: None,
+            seen: kinds.map(Seen::Kinds),
         };
         mark_uncertain(run, self.view.inputs, &asked, marks)
     }

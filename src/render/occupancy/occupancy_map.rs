@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, Device};
 use crate::octree::Octree;
 use crate::render::abi::Class;
-use crate::scene::{Filter, Sampling, Traverse};
+use crate::scene::{Filter, Refill, Sampling, Scene, Sparse, Traverse};
 use crate::volume::Volume;
 
 use super::criterion::Criterion;
@@ -23,15 +23,27 @@ pub struct OccupancyTables {
 }
 
 impl OccupancyTables {
-    /// What casts with this sampling ask for, and where it is `certified` what blocks of pixels show, its test, which does
-    /// by cells whatever rays do, and of a medium by the light of leaves.
-    pub fn of(sampling: &Sampling, certified: bool) -> Self {
+    /// What casts with this sampling ask for.
+    pub fn of(sampling: &Sampling) -> Self {
         let with_distances = sampling.traverse == Traverse::Distance;
         Self {
             filter: sampling.filter,
             with_distances,
-            with_cells: certified || with_distances && sampling.filter == Filter::Linear,
+            with_cells: with_distances && sampling.filter == Filter::Linear,
+            with_light: false,
+        }
+    }
+
+    /// What a scene asks for: its casts, and where pixels are left out or have many rays the tests of what they may show,
+    /// which do by cells whatever rays do, and of a medium by the light of leaves.
+    pub fn of_scene(scene: &Scene) -> Self {
+        let is_certified = |sparse: Sparse| sparse.refill == Refill::Certified;
+        let certified = scene.sparse.is_some_and(is_certified);
+        let of_casts = Self::of(&scene.sampling);
+        Self {
+            with_cells: of_casts.with_cells || certified || scene.anti_aliasing.is_adaptive(),
             with_light: certified,
+            ..of_casts
         }
     }
 }

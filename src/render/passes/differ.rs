@@ -15,7 +15,7 @@ pub struct Differs {
 
 /// The planes by which pixels are compared.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
+pub struct Compared<'a> {
     /// Linear light, premultiplied.
     pub color: &'a Buffer<[f32; 4]>,
     /// A surface's t.
@@ -24,7 +24,7 @@ pub struct Seen<'a> {
     pub layers: Option<&'a DeviceLayers>,
 }
 
-impl Seen<'_> {
+impl Compared<'_> {
     fn has(&self, layer: Layer) -> bool {
         self.layers.is_some_and(|layers| layers.has(layer))
     }
@@ -47,7 +47,7 @@ impl Seen<'_> {
     }
 }
 
-impl Group for Seen<'_> {
+impl Group for Compared<'_> {
     fn add_to(self, args: Args) -> Args {
         let layers = |wanted: bool, layer| {
             let planes = self.layers.filter(|_| wanted);

@@ -6,6 +6,7 @@ use crate::gpu::Buffer;
 use crate::render::resources::DeviceLayers;
 use crate::scene::Emission;
 
+use super::differ::Differs;
 use super::run::Run;
 
 /// What one ray a pixel saw.
@@ -15,16 +16,16 @@ pub struct FirstRays<'a> {
     pub color: &'a Buffer<[f32; 4]>,
     /// The layers, the kind among them where there is one.
     pub layers: &'a DeviceLayers,
-    /// Whether all pixels that are proven to show nothing are unmarked already.
-    pub empty_is_known: bool,
+    /// Of a surface, t of each hit.
+    pub hit_mm: Option<&'a Buffer<f32>>,
 }
 
-/// Unmarks in `cast` the pixels to which many rays would show what one did: those beside which nothing else was
-/// met and whose mean is estimated to differ by no more than the threshold, a difference of channels, sRGB-encoded; where
-/// `empty_is_known`, of those that met something. `coverage` becomes what one ray says of it.
+/// Of the pixels that `cast` marks as cast, marks those to be cast next beside which something else was met, or whose mean
+/// is estimated to differ by more than the threshold; the others are to be filled.
+/// `coverage` becomes what one ray says of it.
 pub fn mark_edges(
     run: &mut Run,
-    threshold: f32,
+    differs: Differs,
     seen: FirstRays,
     cast: &mut Buffer<u32>,
     coverage: Option<&mut Buffer<f32>>,
@@ -33,14 +34,16 @@ pub fn mark_edges(
     let defines = run
         .defines()
         .with("WITH_KIND", u32::from(kind.is_some()))
-        .with("EMPTY_KNOWN", u32::from(seen.empty_is_known))
+        .with("WITH_HITS", u32::from(seen.hit_mm.is_some()))
         .with("COVERAGE", u32::from(coverage.is_some()));
     let args = run
         .screen_args()?
-        .value("threshold", &threshold)
+        .value("threshold", &differs.threshold)
         .value("opaque_from", &Emission::LAYERS_FROM)
         .read("color", seen.color)
         .read_some("kind", kind)
+        .with(footprint)
+        .read_some("hit_mm", seen.hit_mm)
         .write("cast", cast)
         .read_some("coverage", coverage.as_deref());
     run.screen("mark_edges", defines, args)

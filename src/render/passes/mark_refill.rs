@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::gpu::Buffer;
 
-use super::differ::{Differs, Seen};
+use super::differ::{Compared, Differs};
 use super::run::Run;
 
 /// Marks the blocks `spacing` pixels wide whose corners differ to be cast next, and where it `floods` those
@@ -13,7 +13,7 @@ pub fn mark_refill(
     spacing: u32,
     floods: bool,
     differs: Differs,
-    seen: Seen,
+    compared: Compared,
     cast: &mut Buffer<u32>,
 ) -> Result<()> {
     let defines = run.scalar_defines().with("FLOOD", u32::from(floods));
@@ -22,7 +22,7 @@ pub fn mark_refill(
         .value("spacing", &spacing)
         .value("threshold", &differs.threshold)
         .value("footprint", &differs.footprint)
-        .with(seen)
+        .with(compared)
         .write("cast", cast);
-    run.squares("mark_refill", seen.define(defines), args, spacing)
+    run.squares("mark_refill", compared.define(defines), args, spacing)
 }

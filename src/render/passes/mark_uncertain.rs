@@ -2,6 +2,8 @@
 
 use crate::error::Result;
 use crate::gpu::{Args, Buffer, Group};
+use crate::render::abi::{KernelEnum, SeenBy};
+use crate::scene::Emission;
 
 use super::inputs::CastInputs;
 use super::run::Run;
@@ -70,18 +72,48 @@ impl Group for Blocks {
 pub struct SurfaceBlocks<'a> {
     /// The blocks.
     pub blocks: Blocks,
-    /// The iso value, stored units.
+    /// The iso value, stored units; +∞: a medium is asked for.
     pub iso: f32,
     /// How far from its centre a pixel's rays pass at most along either axis, in pixels.
     pub margin: f32,
     /// How far from the surface blocks that show nothing else may be interpolated, mm; `None`: none is.
     pub max_error_mm: Option<f32>,
-    /// What each pixel's first ray met, where it has one: of single pixels those with a hit are not tested.
-    pub kinds: Option<&'a Buffer<u32>>,
+    /// What each pixel's first ray saw, where it has had one.
+    pub seen: Option<Seen<'a>>,
+}
+
+/// What the first ray of each pixel saw: of single pixels none is tested that met something.
+#[derive(Clone, Copy)]
+pub enum Seen<'a> {
+    /// Of a surface, what was met.
+    Kinds(&'a Buffer<u32>),
+    /// Of a medium, its light, premultiplied, and opacity.
+    Colors(&'a Buffer<[f32; 4]>),
+}
+
+impl Group for Seen<'_> {
+    fn add_to(self, args: Args) -> Args {
+        match self {
+            Seen::Kinds(kind) => args.read("kind", kind),
+            Seen::Colors(color) => args
+                .value("opaque_from", &Emission::LAYERS_FROM)
+                .read("color", color),
+        }
+    }
+}
+
+impl SeenBy {
+    fn of(seen: Option<Seen>) -> Self {
+        match seen {
+            None => Self::Nothing,
+            Some(Seen::Kinds(_)) => Self::Kinds,
+            Some(Seen::Colors(_)) => Self::Opacities,
+        }
+    }
 }
 
 /// Marks in `cast` the pixels to be cast next whose blocks are not proven to show nothing of the surface, or one smooth
-/// piece of it alone.
+/// piece of it alone; as cast those that were seen to meet something.
 pub fn mark_uncertain(
     run: &mut Run,
     inputs: CastInputs,
@@ -98,14 +130,14 @@ pub fn mark_uncertain(
         .value("margin", &asked.margin)
         .value("max_error_mm", &asked.max_error_mm.unwrap_or_default())
         .value("iso", &asked.iso)
-        .read_some("kind", asked.kinds)
+        .with(asked.seen)
         .write("cast", cast);
     let defines = run
         .variant
         .defines()
         .with("LANES", LANES)
         .with("SURFACES", u32::from(asked.max_error_mm.is_some()))
-        .with("HITS_KNOWN", u32::from(asked.kinds.is_some()));
+        .with("SEEN", SeenBy::of(asked.seen).number());
     let side = asked.blocks.square_side();
     run.squares("mark_uncertain", defines, args, side)
 }

@@ -215,7 +215,7 @@ impl<'a> Request<'a> {
         bench: &Bench,
     ) -> Result<Vec<Scene>> {
         let mut retaining = Vec::new();
-        for setting in candidates(self.mode, ANY_LIMIT)?.concat() {
+        for setting in candidates(self.mode, ANY_LIMIT, true)?.concat() {
             bench.check_stop()?;
             let options = setting.over(&self.options).checked()?;
             let scene = options.resolve(self.subject)?.scene;

@@ -18,7 +18,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "smooth", "Smooth with a Gaussian of this sigma in mm"),
     ("", "caps", "close the surface where the volume ends"),
     ("", "refine", "how a hit is refined"),
-    ("", "recon", "the filter at every sample or at hits"),
+    ("", "recon", "the filter at hits alone"),
     ("", "diffuse", "light reflected in all directions"),
     ("", "gradient-scale", "voxels from one to the next"),
     ("", "refill", "the blocks that are cast too"),
@@ -46,6 +46,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("compare", "configs", "Settings to compare in place of the built-in ones"),
     ("bench", "output", "A folder for the table and the report"),
     ("bench", "frames", "How often each mode is timed in the experiment speed"),
+    ("bench", "seed", "Decides the volumes and the rays that are tried"),
     ("bench", "peer", "Another renderer to time in the experiment speed"),
     ("bench", "restart", "Discard what a stopped run left in the folder"),
 ];

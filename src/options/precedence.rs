@@ -65,6 +65,9 @@ mod tests {
             (carm, "azimuth = 10"),
             (carm, "elevation = 10"),
             ("aa = 4", "sparse = 4"),
+            ("recon = 'adaptive'", "sampling = 'exact'"),
+            ("recon = 'adaptive'", "filter = 'nearest'"),
+            ("recon = 'adaptive'", "probe = 'on'"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
         ];

@@ -12,8 +12,8 @@ use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
     Emission, Filter, Gradient, Homogeneity, HomogeneityLimit, HomogeneityRule, Knot, Phong,
-    Picture, Precomputed, Projection, Quadrature, QuadratureMethod, Refine, Rgb, Termination,
-    TransferFunction, Window,
+    Picture, Precomputed, Projection, Quadrature, QuadratureMethod, Reconstruction, Refine, Rgb,
+    Termination, TransferFunction, Window,
 };
 use angioray::volume::{Volume, Voxels};
 use common::volume_of;
@@ -173,6 +173,14 @@ where
             let mut straight = common::scene(&volume, 8, picture.clone());
             straight.sampling.filter = filter;
             assert!(renderer.sample_field(&straight).unwrap().samples() > 0);
+            if filter == Filter::Linear && matches!(picture, Picture::Surface { .. }) {
+                straight.sampling.recon = Reconstruction::Adaptive;
+                launches += renderer
+                    .render(&straight, Wanted::ALL)
+                    .unwrap()
+                    .passes
+                    .len();
+            }
         }
     }
     launches

@@ -8,7 +8,8 @@ mod scenes;
 mod volumes;
 
 pub use case::{HardCase, HardScene, HardVolume};
-pub use volumes::{LINE_RADIUS_MM, line_axes, orientation_of};
+pub use scenes::pixels::LINE_RADIUS_MM;
+pub use volumes::{line_axes, orientation_of};
 
 use crate::error::{Error, Result};
 

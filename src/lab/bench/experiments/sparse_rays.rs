@@ -93,7 +93,7 @@ impl Tally {
             self.extra += u64::from(is && !was);
             if was && is {
                 let apart = f64::from((a - b).abs()) / voxel_mm;
-                self.displaced += u64::from(!(apart <= BOUND_VOXELS));
+                self.displaced += u64::from(apart.is_nan() || apart > BOUND_VOXELS);
                 self.max_apart = self.max_apart.max(apart);
             }
         }

@@ -3,9 +3,11 @@
 use glam::DVec3;
 
 use super::super::HardScene;
-use super::super::volumes::LINE_RADIUS_MM;
 use super::view::View;
 use crate::volume::Volume;
+
+/// The radius of the vessels of the hard case `pixel-lines` where their field is 127.5, in mm.
+pub const LINE_RADIUS_MM: f64 = 1.0;
 
 /// The most pixels along a side.
 const MAX_SIDE_PX: f64 = 256.0;

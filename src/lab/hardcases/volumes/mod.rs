@@ -8,7 +8,7 @@ mod pixels;
 mod rays;
 
 pub use kinds::orientation_of;
-pub use pixels::{LINE_RADIUS_MM, line_axes};
+pub use pixels::line_axes;
 
 use super::HardCase;
 use crate::volume::Geometry;

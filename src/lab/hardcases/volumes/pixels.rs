@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::super::HardCase;
-use super::super::scenes::pixels as scenes;
+use super::super::scenes::pixels::{self as scenes, LINE_RADIUS_MM};
 use super::grid::{hash, volume_of};
 use super::unit;
 
@@ -14,9 +14,6 @@ const SLAB: [u64; 3] = [384, 384, 5];
 
 /// How many vessels there are.
 const LINES: u32 = 7;
-
-/// The radius of the vessels of the hard case `pixel-lines` where their field is 127.5, in mm.
-pub const LINE_RADIUS_MM: f64 = 1.0;
 
 /// The centrelines of the vessels of the hard case `pixel-lines`, in mm: a point of each, and the unit vector along
 /// it. All lie in the middle of a slab across z, one in each seventh of a half turn.

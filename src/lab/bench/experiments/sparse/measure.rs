@@ -191,7 +191,7 @@ impl Casters<'_> {
             }
             Way::OneByOne => Seen::of_rays(&self.rival.whole(&scene)?),
             Way::FromNeighbours(spacing) => {
-                Seen::of_rays(&self.rival.from_neighbours(&scene, spacing)?)
+                Seen::of_rays(&self.rival.by_neighbours(&scene, spacing)?)
             }
         })
     }
@@ -205,7 +205,7 @@ impl Casters<'_> {
                 display_ms(&mut self.renderer, &scene, azimuth_deg)?
             }
             Way::OneByOne => self.rival.whole(&there())?.ms,
-            Way::FromNeighbours(spacing) => self.rival.from_neighbours(&there(), spacing)?.ms,
+            Way::FromNeighbours(spacing) => self.rival.by_neighbours(&there(), spacing)?.ms,
         })
     }
 }

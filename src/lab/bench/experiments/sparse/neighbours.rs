@@ -45,7 +45,7 @@ impl Rival<'_> {
     ///
     /// # Errors
     /// As [`Rival::whole`].
-    pub fn from_neighbours(&mut self, scene: &Scene, spacing: u32) -> Result<Crossings> {
+    pub fn by_neighbours(&mut self, scene: &Scene, spacing: u32) -> Result<Crossings> {
         let volume = &self.dataset.volume;
         let mut all = rays(scene, volume);
         let grid = Grid::new(scene, spacing);

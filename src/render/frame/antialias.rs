@@ -8,7 +8,7 @@ use crate::gpu::Buffer;
 use crate::render::abi::{CHECKED_OF, MARK_NEXT};
 use crate::render::occupancy::Criterion;
 use crate::render::passes::{
-    Differs, FirstRays, Run, SampledPixels, compare_samples, mark_checked, mark_edges, mark_grid,
+    FirstRays, Hits, Run, SampledPixels, compare_samples, mark_checked, mark_edges, mark_grid,
     mean_of_samples,
 };
 use crate::render::resources::RaySource;
@@ -96,16 +96,16 @@ fn mark_adaptively(
     marks: &mut Buffer<u32>,
 ) -> Result<()> {
     centers.mark_hidden(run, planes, marks)?;
+    let footprint = view.footprint(run)?;
     let seen = FirstRays {
         color: &planes.color,
         layers: &planes.layers,
-        hit_mm: planes.hit_mm.as_ref(),
+        hits: planes
+            .hit_mm
+            .as_ref()
+            .map(|hit_mm| Hits { footprint, hit_mm }),
     };
-    let differs = Differs {
-        threshold: THRESHOLD,
-        footprint: view.footprint(run)?,
-    };
-    mark_edges(run, differs, seen, marks, planes.coverage.as_mut())
+    mark_edges(run, THRESHOLD, seen, marks, planes.coverage.as_mut())
 }
 
 /// Marks a few of the pixels that have one ray alone, and of which it is not proven that many show the same.

@@ -2,11 +2,10 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::gpu::Buffer;
+use crate::gpu::{Args, Buffer, Group};
 use crate::render::resources::DeviceLayers;
 use crate::scene::Emission;
 
-use super::differ::Differs;
 use super::run::Run;
 
 /// What one ray a pixel saw.
@@ -16,16 +15,32 @@ pub struct FirstRays<'a> {
     pub color: &'a Buffer<[f32; 4]>,
     /// The layers, the kind among them where there is one.
     pub layers: &'a DeviceLayers,
-    /// Of a surface, t of each hit.
-    pub hit_mm: Option<&'a Buffer<f32>>,
+    /// A surface's hits.
+    pub hits: Option<Hits<'a>>,
+}
+
+/// The hits of one ray a pixel.
+#[derive(Clone, Copy)]
+pub struct Hits<'a> {
+    /// The distance of neighbouring rays, mm, at t = 0 and its growth per mm.
+    pub footprint: [f32; 2],
+    /// t of each hit.
+    pub hit_mm: &'a Buffer<f32>,
+}
+
+impl Group for Hits<'_> {
+    fn add_to(self, args: Args) -> Args {
+        args.value("footprint", &self.footprint)
+            .read("hit_mm", self.hit_mm)
+    }
 }
 
 /// Of the pixels that `cast` marks as cast, marks those to be cast next beside which something else was met, or whose mean
-/// is estimated to differ by more than the threshold; the others are to be filled.
+/// is estimated to differ by more than the threshold, a difference of channels, sRGB-encoded; the others are to be filled.
 /// `coverage` becomes what one ray says of it.
 pub fn mark_edges(
     run: &mut Run,
-    differs: Differs,
+    threshold: f32,
     seen: FirstRays,
     cast: &mut Buffer<u32>,
     coverage: Option<&mut Buffer<f32>>,
@@ -34,16 +49,15 @@ pub fn mark_edges(
     let defines = run
         .defines()
         .with("WITH_KIND", u32::from(kind.is_some()))
-        .with("WITH_HITS", u32::from(seen.hit_mm.is_some()))
+        .with("WITH_HITS", u32::from(seen.hits.is_some()))
         .with("COVERAGE", u32::from(coverage.is_some()));
     let args = run
         .screen_args()?
-        .value("threshold", &differs.threshold)
+        .value("threshold", &threshold)
         .value("opaque_from", &Emission::LAYERS_FROM)
         .read("color", seen.color)
         .read_some("kind", kind)
-        .with(footprint)
-        .read_some("hit_mm", seen.hit_mm)
+        .with(seen.hits)
         .write("cast", cast)
         .read_some("coverage", coverage.as_deref());
     run.screen("mark_edges", defines, args)

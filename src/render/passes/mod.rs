@@ -46,7 +46,7 @@ pub use inputs::CastInputs;
 pub use interpolate_hits::interpolate_hits;
 pub use list_marked::list_marked;
 pub use mark_checked::mark_checked;
-pub use mark_edges::{FirstRays, mark_edges};
+pub use mark_edges::{FirstRays, Hits, mark_edges};
 pub use mark_exceeding::{FirstValues, mark_exceeding};
 pub use mark_grid::mark_grid;
 pub use mark_refill::mark_refill;

@@ -93,7 +93,7 @@ static inline bool is_smooth(VOXELS voxels, const SkipGrid *grid, ClipPlanes cli
 }
 
 // In a square in which so many more blocks failed than were proven, no more are tried.
-#define MAX_FAILED 3
+#define MAX_FAILED 8
 #endif
 
 kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, uint widest,

@@ -22,6 +22,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "diffuse", "light reflected in all directions"),
     ("", "gradient-scale", "voxels from one to the next"),
     ("", "refill", "the blocks that are cast too"),
+    ("", "screen-error", "Fill pixels that are proven to be within E"),
     ("", "lmip-threshold", "the value from which a local maximum counts"),
     ("", "raw-type", "Voxel type of a headerless raw file, such as u16be"),
     ("", "raw-offset", "Bytes before a headerless raw file's voxels"),

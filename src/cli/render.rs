@@ -31,6 +31,7 @@ use super::tolerance::choose;
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --aa 4:adaptive
   angioray render head.nrrd -o head.png --mode mip --sparse 4 --refill flood
+  angioray render head.nrrd -o head.png --mode mip --screen-error 0.01
   angioray render head.nrrd -o head.png --mode mip --max-error rmse:0.002
   angioray render head.nrrd -o head.exr --iso 50% --aov all --stats head.json --device reference
   angioray render --scene head.png -o left.png --view left --size 1024x1024")]

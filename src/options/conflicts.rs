@@ -3,7 +3,9 @@
 
 use super::enum_names::Switch;
 use super::{SceneOptions, Shading};
-use crate::scene::{Filter, Mode, QuadratureMethod, Reconstruction, SamplingMethod, Storage, View};
+use crate::scene::{
+    Filter, Mode, QuadratureMethod, Reconstruction, Refill, SamplingMethod, Storage, View,
+};
 
 /// Two options of one scene that cannot both be meant.
 pub(super) struct Contradiction {
@@ -209,6 +211,52 @@ pub(super) const REPLACED: &[Replaced] = &[
     Replaced {
         by: |flags, _| flags.sampling.is_sparse(),
         options: &["aa"],
+    },
+    // Fixed steps keep no error on the screen; an error replaces other refills and their threshold, and the other way
+    // round.
+    Replaced {
+        by: |flags, file| {
+            let mode = flags.clone().or(file.clone()).mode();
+            mode != Mode::Dvr
+                && flags.method() == SamplingMethod::Fixed
+                && flags.sampling.screen_error.is_none()
+        },
+        options: &["screen-error"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let mode = flags.clone().or(file.clone()).mode();
+            flags.sampling.screen_error.is_some() && mode != Mode::Dvr
+        },
+        options: &["sampling", "step", "probe", "refine", "recon"],
+    },
+    Replaced {
+        by: |flags, _| {
+            flags
+                .sampling
+                .refill
+                .is_some_and(|refill| refill != Refill::Certified)
+        },
+        options: &["screen-error"],
+    },
+    Replaced {
+        by: |flags, _| {
+            let grid = flags.sampling.sparse;
+            grid.is_some_and(|grid| grid.threshold().is_some())
+        },
+        options: &["screen-error"],
+    },
+    Replaced {
+        by: |flags, _| flags.sampling.screen_error.is_some(),
+        options: &["refill"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let grid = file.sampling.sparse;
+            let has_threshold = grid.is_some_and(|grid| grid.threshold().is_some());
+            flags.sampling.screen_error.is_some() && has_threshold
+        },
+        options: &["sparse"],
     },
     // An eye replaces a view and a view an eye, each with what turns it.
     Replaced {

@@ -65,6 +65,8 @@ mod tests {
             (carm, "azimuth = 10"),
             (carm, "elevation = 10"),
             ("aa = 4", "sparse = 4"),
+            ("aa = 4", "screen-error = 0.1"),
+            ("sampling = 'fixed'", "screen-error = 0.1"),
             ("recon = 'adaptive'", "sampling = 'exact'"),
             ("recon = 'adaptive'", "filter = 'nearest'"),
             ("recon = 'adaptive'", "probe = 'on'"),
@@ -88,6 +90,22 @@ mod tests {
             }
         }
         assert!(met.iter().all(|count| *count > 0), "{met:?}");
+    }
+
+    #[test]
+    fn an_error_on_the_screen_and_other_refills_replace_each_other() {
+        for [one, other] in [
+            ["screen-error = 0.1", "sparse = 4\nrefill = 'flood'"],
+            ["screen-error = 0.1", "sparse = '4:0.1'"],
+        ] {
+            for [flags, file] in [[one, other], [other, one]] {
+                let merged = parse(flags).over(parse(file));
+                assert!(merged.clone().checked().is_ok(), "{flags} {file}");
+                assert_eq!(parse(flags).or(merged.clone()), merged);
+                // The control: in one source they are refused.
+                assert!(parse(flags).or(parse(file)).checked().is_err());
+            }
+        }
     }
 
     #[test]

@@ -66,8 +66,9 @@ group! {
         #[arg(long, value_name = "buffer|image|filtered")]
         voxels: Storage,
 
-        /// Rays in every pixel, N x N, whose mean is its colour, N from 1 to 8; or N:adaptive, one ray in
-        /// pixels that look like their neighbours, and in iso no more in those proven to show nothing
+        /// Rays in every pixel, N x N, whose mean is its colour, N from 1 to 8; or N:adaptive, one ray where
+        /// more are estimated to show the same and nothing may hide in the pixel; how much that differs from all
+        /// rays everywhere is found from a few pixels, and printed
         #[arg(long, value_name = "N[:adaptive]", allow_hyphen_values = true)]
         aa: AntiAliasing,
 

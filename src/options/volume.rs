@@ -93,7 +93,7 @@ group! {
         raw_offset: u64,
 
         /// Edge of the octree's leaves in cells (a cell lies between 8 voxel centres), 4 to 32; never
-        /// changes the picture
+        /// changes the picture, but for which pixels --screen-error fills outside iso
         #[arg(long, value_name = "CELLS", allow_hyphen_values = true)]
         octree_leaf: Leaf,
     }

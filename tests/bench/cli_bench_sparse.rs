@@ -27,18 +27,35 @@ fn certified_loses_nothing_and_few_rays_do() {
     let Some(rows) = rows(&place, "bench sparse tree.nrrd --quick") else {
         return;
     };
-    // Whole, three families of three, rays one by one, three from neighbours; in mip whole and two families.
-    assert_eq!(rows.len(), 2 * (1 + 9 + 4 + 7));
+    // Whole, three families of three, two errors, rays one by one, three from neighbours; in mip whole, two families and two
+    // errors.
+    assert_eq!(rows.len(), 2 * ((1 + 9 + 2 + 4) + (1 + 6 + 2)));
     let of = |mode: &str, setting: &str| {
         let rows = rows.iter().filter(|row| row["protocol"] == "static");
         let rows = rows.filter(|row| row["mode"] == mode && row["setting"] == setting);
         rows.cloned().collect::<Vec<_>>()
     };
     for row in of("iso", "certified") {
-        for key in ["lost_share", "extra_share", "displaced_share", "rmse"] {
+        for key in ["lost_share", "extra_share", "displaced_share"] {
             assert_eq!(number(&row, key), 0.0, "{key}: {row}");
         }
+        assert!(number(&row, "rmse") < 1e-3, "{row}");
         assert!(number(&row, "rays_share") < 1.0, "{row}");
+    }
+    for row in of("iso", "adaptive") {
+        assert_eq!(
+            (number(&row, "lost"), number(&row, "extra_share")),
+            (0.0, 0.0),
+            "{row}"
+        );
+    }
+    for row in of("mip", "adaptive") {
+        assert!(number(&row, "rays_share") < 1.0, "{row}");
+        // Encoded differences of a grey are at most about twice those of the values where it is not dark.
+        assert!(
+            number(&row, "rmse") < 2.0 * number(&row, "screen_error"),
+            "{row}"
+        );
     }
     for mode in ["iso", "mip"] {
         let whole = &of(mode, "every pixel")[0];

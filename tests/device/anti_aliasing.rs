@@ -10,6 +10,8 @@ use super::invariance::{pictures, tubes};
 use crate::common;
 
 const SIZE_PX: u32 = 41;
+/// Of a picture of which one pixel in 256 are enough to judge by.
+const ADAPTIVE_PX: u32 = 400;
 
 fn aa(text: &str) -> AntiAliasing {
     text.parse().unwrap()
@@ -130,7 +132,7 @@ fn adaptive_rays_give_the_picture_of_all_rays_at_a_share_of_them() {
     let volume = tubes();
     let octree = common::octree(&volume);
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
-    let scene = with(&scenes(&volume, 160)[0], "4");
+    let scene = with(&scenes(&volume, ADAPTIVE_PX)[0], "4");
     let all = renderer.render(&scene, Wanted::ALL).unwrap();
     let adaptive = renderer
         .render(&with(&scene, "4:adaptive"), Wanted::ALL)
@@ -139,7 +141,7 @@ fn adaptive_rays_give_the_picture_of_all_rays_at_a_share_of_them() {
     let error = rmse(&adaptive.frame, &all.frame);
     assert!(error < 0.5 / 255.0, "{}", error * 255.0);
     assert!(rmse(&one.frame, &all.frame) > 10.0 * error);
-    let pixels = 160 * 160;
+    let pixels = u64::from(ADAPTIVE_PX).pow(2);
     assert_eq!(adaptive.rays_per_round[0], pixels);
     let share = adaptive.rays_per_round[1] as f64 / (16 * pixels) as f64;
 

@@ -93,7 +93,9 @@ impl Tally {
             self.extra += u64::from(is && !was);
             if was && is {
                 let apart = f64::from((a - b).abs()) / voxel_mm;
-                self.displaced += u64::from(apart.is_nan() || apart > BOUND_VOXELS);
+                // Both are numbers of single precision.
+                let rounding = 4.0 * f64::from(f32::EPSILON * a.abs()) / voxel_mm;
+                self.displaced += u64::from(apart.is_nan() || apart > BOUND_VOXELS + rounding);
                 self.max_apart = self.max_apart.max(apart);
             }
         }

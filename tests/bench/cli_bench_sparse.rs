@@ -104,6 +104,7 @@ fn a_hundred_thousand_pixels_cast_sparsely_are_the_whole_pictures() {
         assert_eq!(number(certified, key), 0.0, "{certified}");
     }
     assert!(number(certified, "cast_share") < 1.0);
+    assert!(number(certified, "interpolated") > 300.0, "{certified}");
     // The control.
     assert!(number(unfilled, "lost") > 0.0, "{unfilled}");
 }

@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::super::{Bench, Dataset, Experiment, Outcome, Preset, random_scenes, rng::Rng};
 use crate::error::{Error, Result};
-use crate::frame::{DEPTH, Frame, KIND, Layer, Wanted};
+use crate::extent::Dims;
+use crate::frame::{CAST, DEPTH, Frame, KIND, Layer, Wanted};
 use crate::lab::report::{Shown, Table};
 use crate::octree::{Leaf, Octree};
 use crate::render::Renderer;
-use crate::scene::{Mode, Refill, Scene, Sparse, SparseGrid};
+use crate::scene::{Camera, Lens, Mode, Refill, Scene, ScreenError, Sparse, SparseGrid};
 use crate::subject::Subject;
-use crate::volume::Volume;
+use crate::volume::{PhantomKind, PhantomSpec, Volume, VoxelType, phantom};
 
 pub const EXPERIMENT: Experiment = Experiment {
     name: "sparse-rays",
@@ -26,9 +27,15 @@ pub const EXPERIMENT: Experiment = Experiment {
 /// The seed of the volumes and the pictures, unless the user chose another.
 const SEED: u64 = 4;
 
-/// The depth that certified may be off by, in voxels of the smallest spacing: the bound of `--screen-error` where
-/// none is given.
-const BOUND_VOXELS: f64 = 0.05;
+/// The depths that certified may be off by, in voxels of the smallest spacing (`--screen-error`), in turn.
+const BOUNDS_VOXELS: [f64; 3] = [0.05, 0.3, 1.0];
+
+/// Smooth volumes, in which certified finds something to interpolate, in turn.
+const SMOOTH: [PhantomKind; 3] = [
+    PhantomKind::Sphere,
+    PhantomKind::Blob,
+    PhantomKind::MarschnerLobb,
+];
 
 /// Width and height of a picture, in pixels: no multiple of a block or a tile.
 const SIDE_PX: u32 = 127;
@@ -47,9 +54,11 @@ struct Tally {
     cast: u64,
     /// Pixels that hit in the whole picture.
     hits: u64,
+    /// Pixels that hit in the sparse one without a ray.
+    interpolated: u64,
     lost: u64,
     extra: u64,
-    /// Hits in both, further apart than [`BOUND_VOXELS`].
+    /// Hits in both, further apart than the bound.
     displaced: u64,
     /// The furthest that hits in both are apart, in voxels.
     max_apart: f64,
@@ -64,6 +73,7 @@ impl Tally {
         self.pixels += other.pixels;
         self.cast += other.cast;
         self.hits += other.hits;
+        self.interpolated += other.interpolated;
         self.lost += other.lost;
         self.extra += other.extra;
         self.displaced += other.displaced;
@@ -71,7 +81,12 @@ impl Tally {
     }
 
     /// Adds the pixels of a picture.
-    fn compare(&mut self, whole: &Frame, sparse: &Frame, voxel_mm: f64) {
+    fn compare(&mut self, whole: &Frame, sparse: &Frame, bound_voxels: f64, voxel_mm: f64) {
+        let kinds = sparse.plane(KIND).unwrap_or_default().iter();
+        let cast = kinds.zip(sparse.plane(CAST).unwrap_or_default());
+        self.interpolated += cast
+            .filter(|&(&kind, &cast)| kind != 0 && cast == 0)
+            .count() as u64;
         let plane = |frame: &'_ Frame| -> (Vec<u32>, Vec<f32>) {
             let (kinds, depths) = (frame.plane(KIND), frame.plane(DEPTH));
             (
@@ -95,7 +110,7 @@ impl Tally {
                 let apart = f64::from((a - b).abs()) / voxel_mm;
                 // Both are numbers of single precision.
                 let rounding = 4.0 * f64::from(f32::EPSILON * a.abs()) / voxel_mm;
-                self.displaced += u64::from(apart.is_nan() || apart > BOUND_VOXELS + rounding);
+                self.displaced += u64::from(apart.is_nan() || apart > bound_voxels + rounding);
                 self.max_apart = self.max_apart.max(apart);
             }
         }
@@ -138,15 +153,32 @@ fn run(bench: &Bench) -> Result<Outcome> {
     Ok(outcome(&all))
 }
 
-/// The pictures of one volume: every second one, where some are named, is one of those in turn.
+/// The pictures of one volume: a random one, a smooth one, or where some are named one of those, in turn.
 fn unit(bench: &Bench, seed: u64, number: u64) -> Result<Tallies> {
     let named = bench.datasets.len() as u64;
-    if named > 0 && number % 2 == 1 {
-        let Dataset { volume, .. } = &bench.datasets[(number / 2 % named) as usize];
-        return pictures(bench, seed, number, volume);
+    match number % 3 {
+        1 => pictures(bench, seed, number, &smooth(seed.wrapping_add(number))?),
+        2 if named > 0 => {
+            let Dataset { volume, .. } = &bench.datasets[(number / 3 % named) as usize];
+            pictures(bench, seed, number, volume)
+        }
+        _ => {
+            let (_, volume) = random_scenes::volume(seed.wrapping_add(number))?;
+            pictures(bench, seed, number, &volume)
+        }
     }
-    let (_, volume) = random_scenes::volume(seed.wrapping_add(number))?;
-    pictures(bench, seed, number, &volume)
+}
+
+/// A smooth volume of a random size, in single precision.
+fn smooth(number: u64) -> Result<Volume> {
+    let mut rng = Rng::new(number);
+    let kind = SMOOTH[rng.below(SMOOTH.len() as u32) as usize];
+    let side = u64::from(24 + rng.below(41));
+    let spec = PhantomSpec {
+        voxel_type: VoxelType::F32,
+        ..PhantomSpec::new(kind, Dims::new([side; 3])?)
+    };
+    Ok(phantom(&spec)?.volume)
 }
 
 fn pictures(bench: &Bench, seed: u64, number: u64, volume: &Volume) -> Result<Tallies> {
@@ -154,21 +186,30 @@ fn pictures(bench: &Bench, seed: u64, number: u64, volume: &Volume) -> Result<Ta
     let mut renderer = Renderer::new(bench.device, volume, &octree, bench.options)?;
     let subject = random_scenes::subject(volume);
     let voxel_mm = volume.geometry().smallest_spacing_mm();
-    let wanted = Wanted::NONE.with([Layer::Kind, Layer::Depth]);
+    let wanted = Wanted::NONE.with([Layer::Kind, Layer::Depth, Layer::Cast]);
     let mut tallies = Tallies::default();
     for picture in 0..PICTURES {
         bench.check_stop()?;
         let picture = seed.wrapping_add(number * PICTURES + picture);
-        let scene = scene(picture, &subject)?;
+        let mut scene = scene(picture, &subject)?;
+        if picture % 2 == 0 {
+            scene.camera = magnified(&scene.camera)?;
+        }
         let whole = renderer.render(&scene, wanted)?.frame;
         let of = [
             (Refill::Certified, &mut tallies.certified),
             (Refill::None, &mut tallies.unfilled),
         ];
         for (refill, tally) in of {
-            let sparse = renderer.render(&sparsely(&scene, picture, refill)?, wanted)?;
+            let bound_voxels = BOUNDS_VOXELS[(picture % BOUNDS_VOXELS.len() as u64) as usize];
+            let rule = rule(picture, refill, bound_voxels)?;
+            let sparsely = Scene {
+                sparse: Some(rule),
+                ..scene.clone()
+            };
+            let sparse = renderer.render(&sparsely, wanted)?;
             tally.cast += sparse.rays_per_round.iter().sum::<u64>();
-            tally.compare(&whole, &sparse.frame, voxel_mm);
+            tally.compare(&whole, &sparse.frame, bound_voxels, voxel_mm);
         }
     }
     Ok(tallies)
@@ -183,21 +224,36 @@ fn scene(number: u64, subject: &Subject) -> Result<Scene> {
         .scene)
 }
 
-fn sparsely(scene: &Scene, number: u64, refill: Refill) -> Result<Scene> {
+/// A camera whose pixels are a small part of a voxel: what it sees is smooth.
+fn magnified(camera: &Camera) -> Result<Camera> {
+    const TIMES: f64 = 8.0;
+    let lens = match camera.lens() {
+        Lens::Perspective { fov_deg } => Lens::Perspective {
+            fov_deg: fov_deg / TIMES,
+        },
+        Lens::Orthographic { height_mm } => Lens::Orthographic {
+            height_mm: height_mm / TIMES,
+        },
+    };
+    let (eye, target) = (camera.eye_world(), camera.target_world());
+    Camera::look_at(eye, target, camera.up_given(), lens)
+}
+
+fn rule(number: u64, refill: Refill, bound_voxels: f64) -> Result<Sparse> {
     let spacings = SparseGrid::SPACINGS;
     let spacing = spacings[Rng::new(number).below(spacings.len() as u32) as usize];
     let grid = SparseGrid::new(spacing, None)?;
-    Ok(Scene {
-        sparse: Some(Sparse::new(Some(grid), Some(refill), None, Mode::Iso)?),
-        ..scene.clone()
-    })
+    let is_certified = refill == Refill::Certified;
+    let error = is_certified.then(|| ScreenError::new(bound_voxels));
+    Sparse::new(Some(grid), Some(refill), error.transpose()?, Mode::Iso)
 }
 
-const COLUMNS: [(&str, &str, Shown); 8] = [
+const COLUMNS: [(&str, &str, Shown); 9] = [
     ("refill", "refill", Shown::Short),
     ("pixels", "pixels", Shown::Fixed(0)),
     ("cast_share", "cast, %", Shown::Percent(1)),
     ("hits", "hits", Shown::Fixed(0)),
+    ("interpolated", "interpolated", Shown::Fixed(0)),
     ("lost", "lost", Shown::Fixed(0)),
     ("extra", "extra", Shown::Fixed(0)),
     ("displaced", "displaced", Shown::Fixed(0)),
@@ -216,6 +272,7 @@ fn outcome(all: &Tallies) -> Outcome {
             tally.pixels.into(),
             share.into(),
             tally.hits.into(),
+            tally.interpolated.into(),
             tally.lost.into(),
             tally.extra.into(),
             tally.displaced.into(),
@@ -225,8 +282,8 @@ fn outcome(all: &Tallies) -> Outcome {
     let certified = &all.certified;
     let findings = vec![
         format!(
-            "certified: {} of {} pixels wrong (lost, extra, or further than {BOUND_VOXELS} voxel from the whole \
-             picture's depth)",
+            "certified: {} of {} pixels wrong (lost, extra, or further from the whole picture's depth than 0.05, 0.3 \
+             or 1 voxel, the bounds in turn)",
             certified.wrong(),
             certified.pixels
         ),

@@ -1,12 +1,12 @@
-// Where the rays of listed pixels hit whose blocks are proven to show one smooth piece of the surface
+// Where the rays of pixels hit whose blocks are proven to show one smooth piece of the surface
 // (mark_uncertain): the place along the volume's axis that the block's rays mostly run along is interpolated between the
 // block's corners, which were cast.
 //
 // Reads cast. Reads and writes hit_mm. Writes kind and what else a surface's cast does (cast_planes.clh), the iso value as
 // value.
 #include "lib/ray/blocks.clh"
+#include "lib/ray/camera.clh"
 #include "lib/ray/cast_planes.clh"
-#include "lib/ray/source.clh"
 
 #if CERTIFICATE
 #define CERTIFICATE_PLANE , global uint *certificate
@@ -18,12 +18,15 @@
 static inline Floats origin_along(Ray ray, Ints axis) { return of_axis(axis, ray.origin.x.high, ray.origin.y.high, ray.origin.z.high); }
 static inline Floats speed_along(Ray ray, Ints axis) { return of_axis(axis, ray.dir.x.high, ray.dir.y.high, ray.dir.z.high); }
 
-kernel void interpolate_hits(RAY_SOURCE, float iso, const global uint *cast, global float *hit_mm, global uint *kind DEPTH_PLANE VALUE_PLANE
+kernel void interpolate_hits(RayGrid rays, float iso, const global uint *cast, global float *hit_mm, global uint *kind DEPTH_PLANE VALUE_PLANE
                              CERTIFICATE_PLANE COUNTER_PLANES)
 {
-    Pixels pixels = RAY_PIXELS();
-    Ints mark = GATHER(Ints, cast, pixels.index);
-    Ints side = side_of_mark(mark);
+    Pixels pixels = tile_pixels(rays);
+    Ints mark = read_ints(cast, pixels);
+    pixels.inside = pixels.inside & mark >= (int)MARK_BLOCK;
+    if (!ANY(pixels.inside))
+        return;
+    Ints side = pixels.inside ? side_of_mark(mark) : INTS(1);
     Ints axis = axis_of_mark(mark);
     BlockSide x = block_side(pixels.i, side, 0, rays.width);
     BlockSide y = block_side(pixels.j, side, 0, rays.height);
@@ -34,7 +37,7 @@ kernel void interpolate_hits(RAY_SOURCE, float iso, const global uint *cast, glo
         Floats t = GATHER(Floats, hit_mm, corners.place[n]);
         place += corners.weight[n] * (origin_along(corner, axis) + t * speed_along(corner, axis));
     }
-    Ray ray = RAY_OF(pixels);
+    Ray ray = camera_ray(rays, pixels);
     Floats t = (place - origin_along(ray, axis)) / speed_along(ray, axis);
     SCATTER(pixels.inside, hit_mm, pixels.index, t);
     SCATTER(pixels.inside, kind, pixels.index, INTS(KIND_SURFACE));

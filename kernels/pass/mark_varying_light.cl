@@ -93,6 +93,20 @@ static inline LightRange frustum_light(Packet packet, const SkipGrid *grid, cons
     return range;
 }
 
+static inline float mean_of_corners(Floats v) { return 0.25f * (v.s0 + v.s1 + v.s2 + v.s3); }
+
+// How far rays go in a slice of cells, mm, at least and at most; `speed` is the corners' along the main axis. What they go is
+// a vector that lies between the corners' for all rays between them: no longer than the longest, and no shorter than the
+// shortest as seen along one direction.
+static inline float2 mm_per_slice(Ray corners, Floats speed)
+{
+    Floats3 w = corners.dir_world;
+    float3 along = normalize((float3)(mean_of_corners(w.x), mean_of_corners(w.y), mean_of_corners(w.z)));
+    Floats mm = 1.0f / fabs(speed);
+    Floats seen = (w.x * along.x + w.y * along.y + w.z * along.z) * mm;
+    return (float2)(fmax(MIN_LANE(seen), 0.0f), MAX_LANE(mm));
+}
+
 kernel void mark_varying_light(SKIP_BY_CLASS, const global float4 *leaf_light, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels,
                                uint widest, float max_error, float unit_length_mm, float4 reflects, global uint *cast)
 {
@@ -104,27 +118,19 @@ kernel void mark_varying_light(SKIP_BY_CLASS, const global float4 *leaf_light, C
         Packet packet;
         PacketLines lines;
         bool even = false;
-        if (frustum_start(&packet, corner_rays(rays, block, 0.0f), levels, volume, &lines)) {
+        Ray corners = corner_rays(rays, block, 0.0f);
+        if (frustum_start(&packet, corners, levels, volume, &lines)) {
             if (is_outside(&packet)) {
                 mark_block(rays, block, MARK_FILLED, cast);
                 block_pass(&walk);
                 continue;
             }
-            Floats length = 1.0f / (fabs(lines.main.dir) * unit_length_mm);
-            float2 per_slice = (float2)(MIN_LANE(length), MAX_LANE(length));
+            float2 per_slice = mm_per_slice(corners, lines.main.dir) / unit_length_mm;
             bool is_cut = clip.count > 0u || frustum_begins_inside(&packet, &lines);
             LightRange light = frustum_light(packet, &grid, leaf_light, per_slice, reflects, is_cut);
             float4 differ = light.high - light.low;
             even = fmax(fmax(differ.x, differ.y), fmax(differ.z, differ.w)) <= max_error;
         }
-        if (!even && walk.level > 0) {
-            walk.level--;
-            continue;
-        }
-        if (even)
-            mark_interpolated(rays, block, (int)widest, 0, cast);
-        else
-            mark_block(rays, block, MARK_NEXT, cast);
-        block_pass(&walk);
+        mark_or_part(&walk, rays, block, even, (int)widest, cast);
     }
 }

@@ -53,14 +53,6 @@ kernel void mark_varying_values(VOXELS voxels, SKIP_BY_RANGE, CLIP_PLANES, Volum
         }
         frustum.is_cut = clip.count > 0u || frustum_begins_inside(&frustum.packet, &lines);
         bool even = known && all_meet(volume, clip, corners) && is_even(voxels, &grid, &frustum, cast_by, max_error, walk.level == 0);
-        if (!even && walk.level > 0) {
-            walk.level--;
-            continue;
-        }
-        if (even)
-            mark_interpolated(rays, block, (int)widest, 0, cast);
-        else
-            mark_block(rays, block, MARK_NEXT, cast);
-        block_pass(&walk);
+        mark_or_part(&walk, rays, block, even, (int)widest, cast);
     }
 }

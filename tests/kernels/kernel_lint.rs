@@ -435,7 +435,10 @@ fn the_switches_are_read_from_the_kernels() {
     );
     assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
     // Work-items that are no tiles of rays have one number of lanes.
-    assert_eq!(of("pass/mark_uncertain.cl"), named(&[("LANES", 1)]));
+    assert_eq!(
+        of("pass/mark_uncertain.cl"),
+        named(&[("LANES", 1), ("SEEN", 3), ("SURFACES", 2)])
+    );
 }
 
 #[test]

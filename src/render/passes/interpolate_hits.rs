@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
-use crate::gpu::{Args, Buffer};
+use crate::gpu::Buffer;
 use crate::render::resources::DeviceLayers;
 
 use super::run::Run;
@@ -22,8 +22,8 @@ pub fn interpolate_hits(
         .with("LAYERS", has(Layer::Depth))
         .with("CERTIFICATE", has(Layer::Certificate))
         .with("COUNTERS", has(Layer::Steps));
-    let args = Args::new()
-        .with(&run.rays)
+    let args = run
+        .screen_args()?
         .value("iso", &iso)
         .read("cast", marks)
         .write("hit_mm", hit_mm)
@@ -35,5 +35,5 @@ pub fn interpolate_hits(
             Layer::Steps,
             Layer::Nodes,
         ]));
-    run.cast("interpolate_hits", defines, args)
+    run.screen("interpolate_hits", defines, args)
 }

@@ -27,7 +27,7 @@ static inline float lowest_found(RayGrid rays, Block block, ProjectionCast cast,
     return lowest;
 }
 
-kernel void mark_exceeding(VOXELS voxels, SKIP_BY_RANGE, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, uint widest, float margin,
+kernel void mark_exceeding(VOXELS voxels, SKIP_BY_RANGE, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, float margin,
                            float tolerance, ProjectionCast cast_by, const global uint *kind, const global float *value, global uint *cast)
 {
     SkipGrid grid = skip_by_range(node_class, node_range, levels);

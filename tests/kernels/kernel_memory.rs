@@ -135,7 +135,7 @@ impl Under {
     }
 }
 
-const MODES: [&str; 22] = [
+const MODES: [&str; 30] = [
     "--mode iso --iso 40% --shading phong",
     "--mode iso --iso 40% --shading none --refine newton:4 --traverse kd-restart",
     "--mode iso --iso 40% --clip-plane -0.3,1,0.2,-1 --clip-plane 1,0,0,-0.2",
@@ -158,6 +158,14 @@ const MODES: [&str; 22] = [
     "--mode dvr --quad rk4 --homogeneity 0.5 --homogeneity-rule range --skip off",
     "--mode dvr --quad preintegrated --shading phong",
     "--mode dvr --quad adaptive:0.01 --shading phong",
+    "--mode iso --iso 40% --screen-error 0.5",
+    "--mode mip --screen-error 0.3",
+    "--mode dvr --shading none --screen-error 0.3",
+    "--mode iso --iso 40% --aa 2:adaptive",
+    "--mode mip --aa 2:adaptive",
+    "--mode dvr --shading none --aa 3:adaptive",
+    "--mode mip --sparse 3 --refill flood",
+    "--mode iso --iso 40% --sparse 4:0.1",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.

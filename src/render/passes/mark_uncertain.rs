@@ -64,7 +64,6 @@ impl Group for Blocks {
     fn add_to(self, args: Args) -> Args {
         args.value("spacing", &self.smallest)
             .value("block_levels", &self.levels)
-            .value("widest", &self.widest)
     }
 }
 
@@ -127,6 +126,7 @@ pub fn mark_uncertain(
         .value("volume", &inputs.volume.grid)
         .value("rays", grid)
         .with(asked.blocks)
+        .value("widest", &asked.blocks.widest)
         .value("margin", &asked.margin)
         .value("max_error_mm", &asked.max_error_mm.unwrap_or_default())
         .value("iso", &asked.iso)

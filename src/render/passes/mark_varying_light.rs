@@ -41,6 +41,7 @@ pub fn mark_varying_light(
         .value("volume", &inputs.volume.grid)
         .value("rays", grid)
         .with(asked.blocks)
+        .value("widest", &asked.blocks.widest)
         .value("max_error", &asked.max_error)
         .value("unit_length_mm", &asked.unit_length_mm)
         .value("reflects", &asked.reflects)

@@ -26,6 +26,7 @@ pub fn mark_varying_values(
         .value("volume", &inputs.volume.grid)
         .value("rays", grid)
         .with(blocks)
+        .value("widest", &blocks.widest)
         .value("max_error", &max_error)
         .value("cast_by", cast)
         .write("cast", marks);

@@ -192,7 +192,7 @@ fn pictures(bench: &Bench, seed: u64, number: u64, volume: &Volume) -> Result<Ta
         bench.check_stop()?;
         let picture = seed.wrapping_add(number * PICTURES + picture);
         let mut scene = scene(picture, &subject)?;
-        if picture % 2 == 0 {
+        if picture.is_multiple_of(2) {
             scene.camera = magnified(&scene.camera)?;
         }
         let whole = renderer.render(&scene, wanted)?.frame;

@@ -49,6 +49,8 @@ kernel void mark_edges(RayGrid rays, float threshold, float opaque_from, const g
                        global uint *cast COVERAGE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
+    if (!ANY(pixels.inside))
+        return;
     Mask marked = pixels.inside & read_ints(cast, pixels) == (int)MARK_CAST;
 #if WITH_KIND
     Ints here = read_ints(kind, pixels);

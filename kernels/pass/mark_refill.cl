@@ -60,7 +60,8 @@ kernel void mark_refill(RayGrid rays, uint spacing, float threshold, float2 foot
         Seen last = corners[edge == 0 ? 1 : edge == 2 ? 2 : 3];
         for (int at = from + 1; at < to && !refills; at++) {
             int place = down ? at * width + fixed_at : fixed_at * width + at;
-            if (cast[place] == MARK_CAST) {
+            // Another work-item may mark it meanwhile to be cast next: then it was not cast.
+            if (atomic_or(cast + place, 0u) == MARK_CAST) {
                 float share = (float)(at - from) / (float)(to - from);
                 refills = differ(seen_at(place, SEEN_GIVEN), between(first, last, share), by);
             }
@@ -69,9 +70,8 @@ kernel void mark_refill(RayGrid rays, uint spacing, float threshold, float2 foot
 #endif
     if (!refills)
         return;
-    // Other work-items may write the same to an edge that two blocks share.
+    // An edge belongs to two blocks, whose work-items mark it alike.
     for (int j = y; j <= y_end; j++)
         for (int i = x; i <= x_end; i++)
-            if (cast[j * width + i] == MARK_FILLED)
-                cast[j * width + i] = MARK_NEXT;
+            atomic_cmpxchg(cast + j * width + i, MARK_FILLED, MARK_NEXT);
 }

@@ -16,7 +16,7 @@ use crate::volume::{PhantomKind, PhantomSpec, Volume, VoxelType, phantom};
 pub const EXPERIMENT: Experiment = Experiment {
     name: "sparse-rays",
     about: "pixels of random pictures of random volumes, and of those named, cast sparsely with --refill certified \
-            and whole; fails where one is lost or at another depth",
+            and whole; fails where one is lost or further off than the bound",
     takes_volumes: true,
     counts_rays: true,
     times_frames: false,

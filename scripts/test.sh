@@ -13,6 +13,9 @@ chromium=1
 command -v chromium chromium-browser google-chrome >/dev/null || chromium=0
 export REQUIRE_OPENCL="${REQUIRE_OPENCL:-1}" REQUIRE_CHROMIUM="${REQUIRE_CHROMIUM:-$chromium}" REQUIRE_EXAMPLES=1
 
+# A checkout that is built once has no use for what speeds up the next build.
+export CARGO_INCREMENTAL="${CARGO_INCREMENTAL:-0}"
+
 cargo fmt --check
 cargo clippy --locked --all-targets -- -D warnings
 if cargo nextest --version >/dev/null 2>&1; then

@@ -28,6 +28,8 @@ use super::tolerance::choose;
   angioray render head.nrrd -o head.png
   angioray render head.nrrd -o head.png --mode mip --view left --zoom 1.5
   angioray render cta.nii.gz -o cta.png --mode dvr --tf cta --shading phong --carm 'LAO 30 CRA 20'
+  angioray render head.nrrd -o lit.png --light camera:-1,1,1@ivory --light point:40,-90,60@0.5
+  angioray render head.nrrd -o fog.png --mode dvr --shading phong --shade-from 5%
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --aa 4:adaptive
   angioray render head.nrrd -o head.png --mode mip --sparse 4 --refill flood

@@ -33,6 +33,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/math/lanes.clh",
     "lib/math/pair.clh",
     "lib/math/power.clh",
+    "lib/math/unit.clh",
     "lib/ray/block_walk.clh",
     "lib/ray/blocks.clh",
     "lib/ray/camera.clh",

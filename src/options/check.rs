@@ -2,6 +2,7 @@
 
 use super::conflicts::CONTRADICTIONS;
 use super::group::Keys;
+use super::lights;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
@@ -26,6 +27,7 @@ impl SceneOptions {
         self.camera.check()?;
         self.check_rules()?;
         self.clip.check()?;
+        lights::check(self.picture.light.as_deref().unwrap_or_default())?;
         if let (Some(method), Some(quad)) = (self.sampling.sampling, self.picture.quad)
             && quad.sampling() != method
         {

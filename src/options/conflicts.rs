@@ -1,7 +1,8 @@
 //! Which options of a scene contradict each other, and which of a scene file's give way to a flag beside
 //! those that lose what they need ([`super::rules`]).
 
-use super::enum_names::Switch;
+use super::enum_names::{GradientMethod, Switch};
+use super::shade_from::ShadeFrom;
 use super::{SceneOptions, Shading};
 use crate::scene::{
     Filter, Mode, QuadratureMethod, Reconstruction, Refill, SamplingMethod, Storage, View,
@@ -95,7 +96,22 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
         hint: "choose another quad, or leave homogeneity out",
     },
+    Contradiction {
+        is_in: |all| weighs_gradients(all) && is_precomputed(all),
+        sentence: "'shade-from' cannot be combined with precomputed gradients, of which only the direction is stored",
+        hint: "choose another gradient, or leave shade-from out",
+    },
 ];
+
+/// Whether a medium's shading depends on the gradient's magnitude.
+fn weighs_gradients(options: &SceneOptions) -> bool {
+    let gradient = options.picture.shade_from;
+    gradient.is_some_and(|gradient| gradient != ShadeFrom::default())
+}
+
+fn is_precomputed(options: &SceneOptions) -> bool {
+    options.picture.gradient == Some(GradientMethod::Precomputed)
+}
 
 /// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
@@ -138,7 +154,17 @@ pub(super) const REPLACED: &[Replaced] = &[
             let was_lit = file.mode().is_lit() && file.picture.is_shaded();
             is_other_mode(flags, file) && flags.picture.shading.is_none() && !was_lit
         },
-        options: &["ambient", "diffuse", "specular", "shininess", "light"],
+        options: &[
+            "ambient",
+            "ambient-color",
+            "diffuse",
+            "diffuse-color",
+            "specular",
+            "specular-color",
+            "shininess",
+            "light",
+            "shade-from",
+        ],
     },
     // What implies steps wins over a sampling.
     Replaced {
@@ -198,6 +224,15 @@ pub(super) const REPLACED: &[Replaced] = &[
     Replaced {
         by: |flags, _| flags.picture.homogeneity.is_some(),
         options: &["shading"],
+    },
+    // Of precomputed gradients there is no magnitude.
+    Replaced {
+        by: |flags, file| weighs_gradients(flags) && is_precomputed(file),
+        options: &["gradient", "gradient-scale", "gradient-smooth"],
+    },
+    Replaced {
+        by: |flags, _| is_precomputed(flags),
+        options: &["shade-from"],
     },
     Replaced {
         by: |flags, file| flags.picture.homogeneity.is_some() && is_adaptive(file),

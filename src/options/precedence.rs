@@ -72,6 +72,10 @@ mod tests {
             ("recon = 'adaptive'", "probe = 'on'"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
+            (
+                "mode = 'dvr'\nshading = 'phong'\nshade-from = 3",
+                "mode = 'dvr'\nshading = 'phong'\ngradient = 'precomputed'",
+            ),
         ];
         let mut met = vec![0; CONTRADICTIONS.len()];
         for (one, other) in pairs {

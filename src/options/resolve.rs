@@ -61,7 +61,7 @@ impl SceneOptions {
         };
         let ResolvedPicture {
             picture,
-            light,
+            lights,
             gradient,
             options: of_picture,
         } = given.picture.resolve(self.quadrature(), subject)?;
@@ -78,7 +78,7 @@ impl SceneOptions {
             sampling,
             anti_aliasing: of_sampling.aa.unwrap_or_default(),
             sparse,
-            light,
+            lights,
             gradient,
             tone,
         };
@@ -201,6 +201,7 @@ mod tests {
             match need {
                 Need::Modes(modes, _) => text.push_str(&format!("mode = '{}'\n", modes[0])),
                 Need::Steps => text.push_str("sampling = 'fixed'\n"),
+                Need::Shading => text.push_str("shading = 'phong'\n"),
                 Need::Precomputed(_) => text.push_str("gradient = 'precomputed'\n"),
                 Need::Eye => text.push_str("eye = [9, -40, 3]\n"),
                 Need::Homogeneity => text.push_str("homogeneity = 0.1\n"),

@@ -10,6 +10,7 @@ use std::fmt::Display;
 
 use super::enum_names::{Fit, GradientMethod, NonFiniteRule, Shading, Switch};
 use super::quantities::{AngleDeg, GradientScale, SigmaMm, SigmaVoxels, Zoom};
+use super::shade_from::ShadeFrom;
 use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
 use crate::extent::ImageSize;
 use crate::octree::Leaf;
@@ -215,14 +216,22 @@ pub(crate) const RULES: &[Rule] = &[
         .default(default_shading),
     scene("ambient", What, &[LIGHT, Need::Shading])
         .default(|| Reflectance::AMBIENT.to_string()),
+    scene("ambient-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("diffuse", What, &[LIGHT, Need::Shading])
         .default(|| Reflectance::DIFFUSE.to_string()),
+    scene("diffuse-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("specular", What, &[LIGHT, Need::Shading])
         .default(|| Reflectance::SPECULAR.to_string()),
+    scene("specular-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("shininess", What, &[LIGHT, Need::Shading])
         .default(text::<Shininess>),
     scene("light", What, &[LIGHT, Need::Shading])
         .default(text::<Light>),
+    scene("shade-from", What, &[Need::Modes(DVR, "only a medium has points where the field hardly changes"), Need::Shading])
+        .default(|| format!("{}, all of it", text::<ShadeFrom>())),
     scene("gradient", How, &[NORMALS, Need::Normals])
         .default(text::<GradientMethod>),
     scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE])
@@ -283,6 +292,10 @@ pub(crate) const RULES: &[Rule] = &[
     beside(Group::Bench, "iso", &[Need::Volumes]),
     beside(Group::Bench, "restart", &[Need::ResultsFolder]),
 ];
+
+fn white() -> String {
+    SrgbColor::WHITE.to_string()
+}
 
 fn default_sampling() -> String {
     let (default, steps) = (SamplingMethod::default(), SamplingMethod::Fixed);

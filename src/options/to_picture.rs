@@ -1,20 +1,22 @@
 //! From picture options to the picture, its light and its gradient.
 
 use super::enum_names::{GradientMethod, Shading, Switch};
+use super::lights;
 use super::picture::PictureOptions;
+use super::shade_from::ShadeFrom;
 use super::threshold::{Threshold, WindowEnds};
 use super::transfer_choice::TransferChoice;
 use crate::error::Result;
 use crate::scene::{
     Emission, Gradient, Homogeneity, Light, Mode, Phong, Picture, Precomputed, Projection,
-    Quadrature, Reflection, SrgbColor, TransferFile, Window,
+    Quadrature, Reflection, ShadedFrom, SrgbColor, TransferFile, Window,
 };
 use crate::subject::Subject;
 
 /// The picture options, resolved for a volume.
 pub(super) struct ResolvedPicture {
     pub picture: Picture,
-    pub light: Light,
+    pub lights: Vec<Light>,
     pub gradient: Gradient,
     /// The options that make the same, with every default of the mode in its place, every value physical and
     /// the transfer function written out.
@@ -24,7 +26,7 @@ pub(super) struct ResolvedPicture {
 /// How a picture is lit.
 struct Lighting {
     phong: Option<Phong>,
-    light: Light,
+    lights: Vec<Light>,
     gradient: Gradient,
     /// The mode, and the options that make the same.
     options: PictureOptions,
@@ -67,7 +69,7 @@ impl PictureOptions {
                 color: color.linear(),
                 phong: lighting.phong,
             },
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 iso: Some(Threshold::Value(iso)),
@@ -91,7 +93,7 @@ impl PictureOptions {
         };
         Ok(ResolvedPicture {
             picture: Picture::Projection { of, window },
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 window: Some(WindowEnds {
@@ -119,6 +121,11 @@ impl PictureOptions {
         };
         let file = file.in_values(subject.robust_range);
         let termination = self.termination.unwrap_or_default();
+        let shaded_from = match self.shade_from {
+            Some(gradient) => gradient.resolve(subject)?,
+            None => ShadedFrom::default(),
+        };
+        let is_shaded = lighting.phong.is_some();
         let homogeneity = self.homogeneity.map(|limit| Homogeneity {
             rule: self.homogeneity_rule.unwrap_or_default(),
             limit,
@@ -127,11 +134,12 @@ impl PictureOptions {
             picture: Picture::Emission(Emission {
                 transfer: file.clone().transfer_function(subject.robust_range)?,
                 phong: lighting.phong,
+                shaded_from,
                 quadrature,
                 termination,
                 homogeneity,
             }),
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 tf: Some(TransferChoice::Written(file)),
@@ -139,6 +147,7 @@ impl PictureOptions {
                 termination: Some(termination),
                 homogeneity: homogeneity.map(|homogeneity| homogeneity.limit),
                 homogeneity_rule: homogeneity.map(|homogeneity| homogeneity.rule),
+                shade_from: is_shaded.then_some(ShadeFrom::PerMm(shaded_from)),
                 ..lighting.options
             },
         })
@@ -148,7 +157,7 @@ impl PictureOptions {
         let (gradient, of_gradient) = self.resolved_gradient()?;
         let unlit = Lighting {
             phong: None,
-            light: Light::default(),
+            lights: vec![Light::default()],
             gradient,
             options: Self {
                 mode: Some(self.mode()),
@@ -162,25 +171,37 @@ impl PictureOptions {
             Shading::BlinnPhong => Reflection::BlinnPhong,
         };
         let default = Phong::default();
+        let tint = |color: Option<SrgbColor>| color.unwrap_or(SrgbColor::WHITE);
+        let ambient_color = tint(self.ambient_color);
+        let diffuse_color = tint(self.diffuse_color);
+        let specular_color = tint(self.specular_color);
         let phong = Phong {
             reflection,
             ambient: self.ambient.unwrap_or(default.ambient),
+            ambient_color: ambient_color.linear(),
             diffuse: self.diffuse.unwrap_or(default.diffuse),
+            diffuse_color: diffuse_color.linear(),
             specular: self.specular.unwrap_or(default.specular),
+            specular_color: specular_color.linear(),
             shininess: self.shininess.unwrap_or(default.shininess),
         };
-        let light = self.light.unwrap_or_default();
+        let lights = self.light.clone();
+        let lights = lights.unwrap_or_else(|| vec![Light::default()]);
+        lights::check(&lights)?;
         Ok(Lighting {
             phong: Some(phong),
-            light,
             options: Self {
                 ambient: Some(phong.ambient),
+                ambient_color: Some(ambient_color),
                 diffuse: Some(phong.diffuse),
+                diffuse_color: Some(diffuse_color),
                 specular: Some(phong.specular),
+                specular_color: Some(specular_color),
                 shininess: Some(phong.shininess),
-                light: Some(light),
+                light: Some(lights.clone()),
                 ..unlit.options
             },
+            lights,
             ..unlit
         })
     }

@@ -6,6 +6,7 @@
 //! Surfaces and projections are solved from these cubics to machine precision; emission–absorption
 //! is integrated adaptively between the points where its integrand is not smooth.
 
+mod bernstein;
 mod cells;
 mod clip;
 mod collocation;

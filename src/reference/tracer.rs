@@ -15,7 +15,7 @@ use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
 use super::medium::Medium;
 use super::projection::project;
-use super::shade::{Lighting, normal_from_gradient};
+use super::shade::{Lighting, LitPoint, normal_from_gradient};
 use super::surface::{Crossing, first_crossing};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
@@ -54,7 +54,7 @@ impl RayResult {
 
 /// A volume and a scene, prepared for casting rays. Φ is followed without the calibration's intercept,
 /// so that values far from zero keep their digits. Of the scene it uses the picture, the clip
-/// planes, the light, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
+/// planes, the lights with the camera that some are fixed to, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
 pub struct Tracer<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
@@ -63,6 +63,7 @@ pub struct Tracer<'a> {
     clip_planes: Vec<IndexPlane>,
     noise: f64,
     medium: Option<Medium>,
+    lighting: Option<Lighting>,
     wanted: Wanted,
 }
 
@@ -98,6 +99,7 @@ impl<'a> Tracer<'a> {
                 }
                 _ => None,
             },
+            lighting: lighting(scene),
             wanted: Wanted::NONE,
         })
     }
@@ -129,46 +131,53 @@ impl<'a> Tracer<'a> {
                 self.volume.rescale().slope,
                 self.scene.sampling.filter,
             );
-            self.see(&field, &interval, ray.dir_world)
+            self.see(&field, &interval, ray)
         })
     }
 
-    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> RayResult {
+    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, ray: Ray) -> RayResult {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
                 let iso = self.volume.rescale().without_intercept(*iso);
                 let (crossing, cells) =
                     first_crossing(field, interval, iso, *caps, self.scene.gradient);
                 let seen = crossing.map_or(RayResult::NOTHING, |crossing| {
-                    self.surface(&crossing, interval, dir_world)
+                    self.surface(&crossing, interval, ray)
                 });
                 RayResult { cells, ..seen }
             }
             Picture::Projection { of, window } => self.projection(field, interval, *of, *window),
-            Picture::Emission(_) => self.emission(field, interval, dir_world),
+            Picture::Emission(_) => self.emission(field, interval, ray),
         }
     }
 
-    fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> RayResult {
+    fn surface(&self, crossing: &Crossing, interval: &Interval, ray: Ray) -> RayResult {
+        let to_viewer = -ray.dir_world;
         let normal_world = match crossing.cap {
             Some(entry) => self.outward_normal(entry),
             None => {
                 let gradient = DVec3::from_array(crossing.gradient);
-                normal_from_gradient(self.gradient_world_from_index() * gradient, -dir_world)
+                normal_from_gradient(self.gradient_world_from_index() * gradient, to_viewer)
             }
         };
-        let Picture::Surface { color, phong, .. } = &self.scene.picture else {
+        let Picture::Surface { color, .. } = &self.scene.picture else {
             return RayResult::NOTHING;
         };
-        let [r, g, b] = match phong {
-            Some(phong) => {
-                Lighting::new(*phong, self.scene.light, dir_world).reflect(color.0, normal_world)
+        let depth_mm = interval.enter_mm + crossing.at_mm;
+        let [r, g, b] = match &self.lighting {
+            Some(lighting) => {
+                let point = LitPoint {
+                    at_world: ray.origin_world + ray.dir_world * depth_mm,
+                    to_viewer,
+                    normal: normal_world,
+                };
+                lighting.reflect(color.0, point)
             }
             None => color.0,
         };
         RayResult {
             color: [r, g, b, 1.0],
-            depth_mm: interval.enter_mm + crossing.at_mm,
+            depth_mm,
             normal_world,
             value: crossing.value + self.volume.rescale().intercept,
             cells: 0,
@@ -203,17 +212,19 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    fn emission<T: Voxel>(
-        &self,
-        field: &Field<T>,
-        interval: &Interval,
-        dir_world: DVec3,
-    ) -> RayResult {
+    fn emission<T: Voxel>(&self, field: &Field<T>, interval: &Interval, ray: Ray) -> RayResult {
         let (Some(medium), Picture::Emission(picture)) = (&self.medium, &self.scene.picture) else {
             return RayResult::NOTHING;
         };
-        let shading = picture.phong.map(|phong| Shading {
-            lighting: Lighting::new(phong, self.scene.light, dir_world),
+        let Ray {
+            origin_world,
+            dir_world,
+        } = ray;
+        let shading = self.lighting.as_ref().map(|lighting| Shading {
+            lighting,
+            start_world: origin_world + dir_world * interval.enter_mm,
+            dir_world,
+            shaded_from: picture.shaded_from.get(),
             gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
         });
@@ -280,4 +291,14 @@ impl<'a> Tracer<'a> {
         outward[face.axis] = if face.low { -1.0 } else { 1.0 };
         (self.gradient_world_from_index() * outward).normalize_or_zero()
     }
+}
+
+/// How a shaded picture is lit.
+fn lighting(scene: &Scene) -> Option<Lighting> {
+    let phong = match &scene.picture {
+        Picture::Surface { phong, .. } => *phong,
+        Picture::Emission(emission) => emission.phong,
+        Picture::Projection { .. } => None,
+    };
+    phong.map(|phong| Lighting::new(phong, &scene.lights, &scene.camera))
 }

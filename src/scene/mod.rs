@@ -15,6 +15,7 @@ mod homogeneity;
 mod light;
 mod mode;
 mod path;
+mod phong;
 mod picture;
 mod quadrature;
 pub(crate) mod quantities;
@@ -33,14 +34,15 @@ pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
 pub use gradient::{Gradient, Precomputed};
 pub use homogeneity::{Homogeneity, HomogeneityRule};
-pub use light::{Direction, Light, Phong, Reflection};
+pub use light::{Direction, Light, LightFrom, LightPlace};
 pub use mode::Mode;
 pub use path::{FrameCount, Orbit, OrbitAxis};
+pub use phong::{MostReflected, Phong, Reflection};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
-    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, ScreenError,
-    Shininess, StepVoxels, Termination,
+    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity, Reflectance,
+    ScreenError, ShadedFrom, Shininess, StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
@@ -73,8 +75,8 @@ pub struct Scene {
     pub anti_aliasing: AntiAliasing,
     /// Which pixels have rays of their own; `None`: all.
     pub sparse: Option<Sparse>,
-    /// The light source for shading.
-    pub light: Light,
+    /// The lights for shading, at most [`Light::MAX_COUNT`].
+    pub lights: Vec<Light>,
     /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
     /// The tone curve of display pictures.
@@ -105,7 +107,7 @@ impl Scene {
             sampling,
             anti_aliasing: AntiAliasing::OFF,
             sparse: None,
-            light: Light::default(),
+            lights: vec![Light::default()],
             gradient: Gradient::default(),
             tone: Tone::default(),
         })

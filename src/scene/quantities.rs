@@ -65,6 +65,11 @@ quantities! {
     StepVoxels = 0.5: "a step", "from 0.001 to 100 voxels", |v| (0.001..=100.0).contains(&v);
     /// Share of light that a surface reflects: ambient, diffuse, specular.
     Reflectance: "a reflectance", "from 0 to 10", |v| (0.0..=10.0).contains(&v);
+    /// Factor of a light's colour, in linear light.
+    Intensity: "an intensity", "from 0 to 1000", |v| (0.0..=1000.0).contains(&v);
+    /// Magnitude of Φ's gradient, values per mm, from which a medium is shaded fully; 0: everywhere.
+    ShadedFrom = 0.0: "a gradient to shade from", "from 0 to 1e30 values per mm",
+        |v| (0.0..=1e30).contains(&v);
     /// Exponent of the specular term.
     Shininess = 32.0: "a shininess", "from 1 to 1000", |v| (1.0..=1000.0).contains(&v);
     /// Opacity at which a ray ends: the colour lost is at most 1 minus this times the brightest colour.
@@ -89,6 +94,11 @@ impl Reflectance {
     pub const DIFFUSE: Self = Self(0.9);
     /// Light mirrored, where none is given.
     pub const SPECULAR: Self = Self(0.2);
+}
+
+impl Intensity {
+    /// The intensity of a light where none is given.
+    pub const ONE: Self = Self(1.0);
 }
 
 impl Termination {
@@ -124,6 +134,8 @@ mod tests {
         assert!(Brightness::new(Brightness::default().get()).is_ok());
         assert!(Contrast::new(Contrast::default().get()).is_ok());
         assert!(Gamma::new(Gamma::default().get()).is_ok());
+        assert!(Intensity::new(Intensity::ONE.get()).is_ok());
+        assert!(ShadedFrom::new(ShadedFrom::default().get()).is_ok());
         for reflectance in [
             Reflectance::AMBIENT,
             Reflectance::DIFFUSE,

@@ -456,6 +456,14 @@ fn a_replayed_picture_is_the_same_bytes_on_the_device() {
         ("iso.exr", "--iso 40% --aov all"),
         ("mip.png", "--mode mip --step 0.5 --window 90%,p30"),
         ("dvr.png", "--mode dvr --shading phong --bit-depth 16"),
+        (
+            "lit.png",
+            "--iso 40% --light camera:-1,1,1@ivory@0.7 --light point:20,-30,40@#8040ff --specular-color gold",
+        ),
+        (
+            "fog.png",
+            "--mode dvr --shading blinn-phong --shade-from 5% --light 0,0,1 --light headlight@0.3",
+        ),
     ] {
         place.done(&format!(
             "render blob.nrrd -o {name} --size 40x24 {flags} {device}"

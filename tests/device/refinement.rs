@@ -74,7 +74,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
             step: StepVoxels::new(STEP_VOXELS).unwrap(),
             ..Sampling::default()
         },
-        light: Light::default(),
+        lights: vec![Light::default()],
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

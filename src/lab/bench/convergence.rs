@@ -197,7 +197,7 @@ pub fn through(volume: &Volume, point: DVec3, toward: DVec3, emission: Emission)
         sampling: Default::default(),
         anti_aliasing: Default::default(),
         sparse: None,
-        light: Default::default(),
+        lights: vec![Default::default()],
         gradient: Default::default(),
         tone: Default::default(),
     })

@@ -2,8 +2,8 @@
 
 use crate::frame::{Certificate, Kind};
 use crate::scene::{
-    ClipPlane, Gradient, QuadratureMethod, RefineMethod, Reflection, Storage, TransferFunction,
-    Traverse,
+    ClipPlane, Gradient, Light, LightFrom, QuadratureMethod, RefineMethod, Reflection, Storage,
+    TransferFunction, Traverse,
 };
 
 /// An enum that kernels know by numbers.
@@ -95,6 +95,14 @@ kernel_enum! {
         None => REFLECTION_NONE = 0,
         Some(Reflection::Phong) => REFLECTION_PHONG = 1,
         Some(Reflection::BlinnPhong) => REFLECTION_BLINN_PHONG = 2,
+    }
+}
+
+kernel_enum! {
+    LightFrom {
+        LightFrom::Eye => LIGHT_FROM_EYE = 0,
+        LightFrom::Direction(_) => LIGHT_FROM_DIRECTION = 1,
+        LightFrom::Point(_) => LIGHT_FROM_POINT = 2,
     }
 }
 
@@ -220,6 +228,7 @@ const NUMBERS: &[(&str, u32)] = &[
     ("CLASS_BITS", CLASS_BITS),
     ("MAX_DISTANCE", MAX_DISTANCE),
     ("MAX_CLIP_PLANES", ClipPlane::MAX_COUNT as u32),
+    ("MAX_LIGHTS", Light::MAX_COUNT as u32),
     ("MAX_KNOTS", MAX_KNOTS),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("LISTED_SQUARE", LISTED_SQUARE),
@@ -247,6 +256,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         RefineMethod::CONSTANTS,
         Gradient::CONSTANTS,
         <Option<Reflection>>::CONSTANTS,
+        LightFrom::CONSTANTS,
         QuadratureMethod::CONSTANTS,
         Class::CONSTANTS,
         Rays::CONSTANTS,

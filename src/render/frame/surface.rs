@@ -3,12 +3,12 @@
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{Filling, KernelEnum, Shading, StoredIso, SurfaceCast, shading};
+use crate::render::abi::{Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, shading};
 use crate::render::passes::{
     Blocks, Run, Seen, SurfaceBlocks, cast_surface, exact_surface, interpolate_hits,
     mark_uncertain, shade_surface, surface_normal,
 };
-use crate::scene::{Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError};
+use crate::scene::{Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError, ShadedFrom};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -37,10 +37,15 @@ pub struct SurfacePasses<'a> {
 impl<'a> SurfacePasses<'a> {
     /// The passes of a surface.
     pub fn new(view: &'a View<'a>, iso: StoredIso, surface: &Surface) -> Self {
+        let material = Material {
+            color: surface.color,
+            phong: surface.phong,
+            shaded_from: ShadedFrom::default(),
+        };
         Self {
             view,
             cast: surface_cast(view, iso, surface),
-            light: shading(surface.color, surface.phong, view.scene.light),
+            light: shading(&material, view.scene, view.volume),
             is_shaded: surface.phong.is_some(),
         }
     }
@@ -167,7 +172,8 @@ impl SurfacePasses<'_> {
         if layers.has(Layer::Normal) {
             surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)?;
         }
-        shade_surface(run, &self.light, self.is_shaded, layers, color)
+        let shaded_at = self.is_shaded.then_some(&*hit_mm);
+        shade_surface(run, &self.light, shaded_at, layers, color)
     }
 }
 

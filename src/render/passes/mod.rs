@@ -51,7 +51,7 @@ pub use mark_exceeding::{FirstValues, mark_exceeding};
 pub use mark_grid::mark_grid;
 pub use mark_refill::mark_refill;
 pub use mark_uncertain::{Blocks, Seen, SurfaceBlocks, mark_uncertain};
-pub use mark_varying_light::{MediumBlocks, mark_varying_light};
+pub use mark_varying_light::{MediumBlocks, Reflects, mark_varying_light};
 pub use mark_varying_values::mark_varying_values;
 pub use mean_of_samples::{SampledPixels, mean_of_samples};
 pub use run::{Passes, Run};

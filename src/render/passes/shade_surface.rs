@@ -8,19 +8,21 @@ use crate::render::resources::DeviceLayers;
 
 use super::run::Run;
 
-/// The `color` of each hit: where `shaded`, by the normal, else the base colour. Reads the kind.
+/// The `color` of each hit: where the hits are given, by the normal there, else the base colour. Reads the kind.
 pub fn shade_surface(
     run: &mut Run,
     shading: &Shading,
-    shaded: bool,
+    hit_mm: Option<&Buffer<f32>>,
     layers: &DeviceLayers,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let defines = run.defines().with("SHADED", u32::from(shaded));
-    let normal: &[Layer] = if shaded { &[Layer::Normal] } else { &[] };
+    let is_shaded = hit_mm.is_some();
+    let defines = run.defines().with("SHADED", u32::from(is_shaded));
+    let normal: &[Layer] = if is_shaded { &[Layer::Normal] } else { &[] };
     let args = Args::new()
         .with(&run.rays)
         .value("shading", shading)
+        .read_some("hit_mm", hit_mm)
         .with(layers.reading(&[Layer::Kind]))
         .with(layers.reading(normal))
         .write("color", color);

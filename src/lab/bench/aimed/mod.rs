@@ -283,7 +283,7 @@ fn scene_of(target: &Target) -> Result<Scene> {
         },
         clip_planes: Vec::new(),
         sampling: Sampling::default(),
-        light: Light::default(),
+        lights: vec![Light::default()],
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

@@ -146,7 +146,7 @@ pub fn scene(
         },
         clip_planes: Vec::new(),
         sampling,
-        light: Light::default(),
+        lights: vec![Light::default()],
         gradient: Default::default(),
         anti_aliasing: Default::default(),
         sparse: None,

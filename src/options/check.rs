@@ -2,11 +2,10 @@
 
 use super::conflicts::CONTRADICTIONS;
 use super::group::Keys;
-use super::lights;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
-use crate::scene::{Mode, SamplingMethod};
+use crate::scene::{Light, Mode, SamplingMethod};
 
 /// The order in which needs are checked: that an option belongs to another mode says more than that
 /// something else is missing.
@@ -27,7 +26,7 @@ impl SceneOptions {
         self.camera.check()?;
         self.check_rules()?;
         self.clip.check()?;
-        lights::check(self.picture.light.as_deref().unwrap_or_default())?;
+        Light::check_count(self.picture.light.as_deref().unwrap_or_default())?;
         if let (Some(method), Some(quad)) = (self.sampling.sampling, self.picture.quad)
             && quad.sampling() != method
         {

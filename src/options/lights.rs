@@ -7,24 +7,9 @@ use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserializer, Serializer};
 
 use super::text_form::{self, Item};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number_text::number;
 use crate::scene::Light;
-
-/// Checks the number of lights.
-///
-/// # Errors
-/// Usage: more than a scene may have.
-pub(super) fn check(lights: &[Light]) -> Result<()> {
-    if lights.len() > Light::MAX_COUNT {
-        return Err(Error::usage(format!(
-            "{} lights: there may be at most {}",
-            lights.len(),
-            Light::MAX_COUNT
-        )));
-    }
-    Ok(())
-}
 
 /// Reads a light, or a list of them. A list of numbers alone is the direction toward one.
 pub(super) fn deserialize<'de, D>(from: D) -> std::result::Result<Option<Vec<Light>>, D::Error>

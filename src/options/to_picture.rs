@@ -1,7 +1,6 @@
 //! From picture options to the picture, its light and its gradient.
 
 use super::enum_names::{GradientMethod, Shading, Switch};
-use super::lights;
 use super::picture::PictureOptions;
 use super::shade_from::ShadeFrom;
 use super::threshold::{Threshold, WindowEnds};
@@ -187,7 +186,7 @@ impl PictureOptions {
         };
         let lights = self.light.clone();
         let lights = lights.unwrap_or_else(|| vec![Light::default()]);
-        lights::check(&lights)?;
+        Light::check_count(&lights)?;
         Ok(Lighting {
             phong: Some(phong),
             options: Self {

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::error::{Error, Result};
 use crate::extent::Range;
 use crate::frame::{Kind, Layer, Wanted};
-use crate::scene::{Emission, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
+use crate::scene::{Emission, Light, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
 use crate::volume::{Rescale, Volume, Voxel};
 use crate::with_voxels;
 
@@ -71,8 +71,9 @@ impl<'a> Tracer<'a> {
     /// Prepares a volume and a scene for casting rays.
     ///
     /// # Errors
-    /// The volume's spacing is too small for double precision.
+    /// The volume's spacing is too small for double precision; usage: more than [`Light::MAX_COUNT`] lights.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
+        Light::check_count(&scene.lights)?;
         let (range, slope) = (volume.stored_range(), volume.rescale().slope);
         let magnitude = slope * range.min.abs().max(range.max.abs());
         let index_from_world = volume.geometry().index_from_world().matrix3;

@@ -100,6 +100,20 @@ impl Light {
     /// The maximum number of lights of a scene.
     pub const MAX_COUNT: usize = 4;
 
+    /// Checks how many lights a scene has.
+    ///
+    /// # Errors
+    /// Usage: more than [`Self::MAX_COUNT`].
+    pub fn check_count(lights: &[Self]) -> Result<()> {
+        let (count, max) = (lights.len(), Self::MAX_COUNT);
+        if count > max {
+            return Err(Error::usage(format!(
+                "{count} lights: there may be at most {max}"
+            )));
+        }
+        Ok(())
+    }
+
     /// A white light at the eye.
     pub const HEADLIGHT: Self = Self::white(LightPlace::Headlight);
 

@@ -358,18 +358,6 @@ fn nonsense_is_refused_with_a_reason() {
         ),
         ("mode = 'dvr'\nlight = 'headlight'", "without shading"),
         ("shading = 'none'\nspecular = 0.5", "without shading"),
-        ("mode = 'dvr'\nspecular-color = 'red'", "without shading"),
-        ("mode = 'mip'\nambient-color = 'red'", "no surface to light"),
-        ("shade-from = 3", "only a medium has points"),
-        ("mode = 'dvr'\nshade-from = 3", "without shading"),
-        (
-            "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight', 'point:1,2,3']",
-            "5 lights: there may be at most 4",
-        ),
-        (
-            "mode = 'dvr'\nshading = 'phong'\nshade-from = 3\ngradient = 'precomputed'",
-            "of which only the direction is stored",
-        ),
         ("fov = 30\northo = 100", "cannot be combined"),
         ("eye = [1, 2, 3]\nview = 'left'", "cannot be combined"),
         ("eye = [1, 2, 3]\ncarm = 'LAO 3'", "cannot be combined"),
@@ -396,14 +384,40 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'iso'\ncaps = true",
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
-        "mode = 'dvr'\nshading = 'phong'\nshade-from = 3",
-        "mode = 'dvr'\nshading = 'phong'\nshade-from = 0\ngradient = 'precomputed'",
-        "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight']",
         "sampling = 'fixed'\nrecon = 'adaptive'\nprobe = 'off'",
         "recon = 'full'\nfilter = 'nearest'\nprobe = 'on'",
         "carm = 'LAO 10'\nview = 'anterior'",
         "eye = [1, 2, 3]\nzoom = 2\nroll = 10\nazimuth = 5",
         "eye = [0, 1e12, 0]",
+    ] {
+        assert!(file(text).checked().is_ok(), "{text}");
+    }
+}
+
+#[test]
+fn light_that_means_nothing_is_refused_with_a_reason() {
+    for (text, reason) in [
+        ("mode = 'dvr'\nspecular-color = 'red'", "without shading"),
+        ("mode = 'mip'\nambient-color = 'red'", "no surface to light"),
+        ("shade-from = 3", "only a medium has points"),
+        ("mode = 'dvr'\nshade-from = 3", "without shading"),
+        (
+            "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight', 'point:1,2,3']",
+            "5 lights: there may be at most 4",
+        ),
+        (
+            "mode = 'dvr'\nshading = 'phong'\nshade-from = 3\ngradient = 'precomputed'",
+            "of which only the direction is stored",
+        ),
+    ] {
+        let message = refusal(text);
+        assert!(message.contains(reason), "{text}: {message}");
+    }
+    // The controls: the same keys where they mean something.
+    for text in [
+        "mode = 'dvr'\nshading = 'phong'\nshade-from = 3",
+        "mode = 'dvr'\nshading = 'phong'\nshade-from = 0\ngradient = 'precomputed'",
+        "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight']",
     ] {
         assert!(file(text).checked().is_ok(), "{text}");
     }

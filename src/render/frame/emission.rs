@@ -10,7 +10,9 @@ use crate::render::passes::{
     cast_emission, mark_uncertain, mark_varying_light,
 };
 use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
-use crate::scene::{Emission, Light, Quadrature, Rgb, ScreenError, TransferFunction, Traverse};
+use crate::scene::{
+    Emission, Gradient, Light, Quadrature, Rgb, ScreenError, TransferFunction, Traverse,
+};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -34,7 +36,7 @@ impl<'a> EmissionPasses<'a> {
     /// The passes of a medium, whose transfer function is uploaded.
     ///
     /// # Errors
-    /// The device has no room; homogeneous nodes beside what excludes them.
+    /// The device has no room; homogeneous nodes, or a gradient to shade from, beside what excludes them.
     pub fn new(
         run: &Run,
         view: &'a View<'a>,
@@ -42,6 +44,7 @@ impl<'a> EmissionPasses<'a> {
         opacity: &Opacity,
     ) -> Result<Self> {
         check_homogeneity(emission)?;
+        check_gradient(emission, view.scene.gradient)?;
         let quadrature = emission.quadrature;
         let with_values = layers(view).contains(&Layer::Value);
         let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
@@ -132,6 +135,16 @@ fn check_homogeneity(emission: &Emission) -> Result<()> {
     if emission.homogeneity.is_some() && refuses {
         return Err(Error::usage(
             "homogeneous nodes go with neither shading nor the adaptive quadrature",
+        ));
+    }
+    Ok(())
+}
+
+fn check_gradient(emission: &Emission, gradient: Gradient) -> Result<()> {
+    let is_direction = matches!(gradient, Gradient::Precomputed(_));
+    if emission.phong.is_some() && emission.shaded_from.get() > 0.0 && is_direction {
+        return Err(Error::usage(
+            "a gradient to shade from does not go with precomputed gradients, of which only the direction is stored",
         ));
     }
     Ok(())

@@ -14,7 +14,7 @@ use crate::render::resources::{
     DeviceClip, DeviceDirections, DeviceGradient, DeviceVoxels, GradientFigures, HeldVolume,
     RaySource, needed_gradients,
 };
-use crate::scene::{SamplingMethod, Scene, Storage};
+use crate::scene::{Light, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
@@ -180,7 +180,7 @@ impl<'a> Renderer<'a> {
         wanted: Wanted,
         pixels: Option<&[u32]>,
     ) -> Result<Rendering> {
-        self.check_sampling(scene)?;
+        self.check_scene(scene)?;
         let listing_bytes = listing_bytes(scene);
         let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree) + listing_bytes;
         check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
@@ -222,7 +222,8 @@ impl<'a> Renderer<'a> {
     }
 
     /// Checks that the scene's samples can be counted and read.
-    fn check_sampling(&self, scene: &Scene) -> Result<()> {
+    fn check_scene(&self, scene: &Scene) -> Result<()> {
+        Light::check_count(&scene.lights)?;
         let method = scene.sampling_method();
         if method == SamplingMethod::Fixed {
             check_step(scene, self.volume)?;

@@ -1,6 +1,7 @@
 //! What a light is fixed to, and that lanes, rays in a pixel and pixels that are not cast leave it where it is.
 
 use angioray::frame::{Frame, Wanted};
+use angioray::reference::Tracer;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
     AntiAliasing, Camera, Emission, Lens, Light, Mode, Phong, Picture, Quadrature, Rgb, Scene,
@@ -61,6 +62,25 @@ fn a_light_of_the_camera_turns_with_it_and_one_of_the_patient_does_not() {
             }
         }
     }
+}
+
+#[test]
+fn too_many_lights_are_refused_by_device_and_reference() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let (volume, octree) = (ball(), common::octree(&ball()));
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    let with = |count: usize| Scene {
+        lights: vec![Light::HEADLIGHT; count],
+        ..common::scene(&volume, 8, surface(0.0, Phong::default()))
+    };
+    let refused = renderer.render(&with(5), Wanted::NONE).err().unwrap();
+    let says = "5 lights: there may be at most 4";
+    assert!(refused.to_string().contains(says), "{refused}");
+    let refused = Tracer::new(&volume, &with(5)).err().unwrap();
+    assert!(refused.to_string().contains(says), "{refused}");
+    assert!(renderer.render(&with(4), Wanted::NONE).is_ok());
 }
 
 /// Lights of every kind, on a material with colours, and in a medium a gradient to shade from.

@@ -85,6 +85,18 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, pad);
     }
     {
+        Jitter value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(Jitter, parts);
+        layout[n++] = OFFSET(Jitter, hashed);
+        layout[n++] = OFFSET(Jitter, side);
+        layout[n++] = OFFSET(Jitter, along_x);
+        layout[n++] = OFFSET(Jitter, along_y);
+        layout[n++] = OFFSET(Jitter, start);
+        layout[n++] = OFFSET(Jitter, pad_0);
+        layout[n++] = OFFSET(Jitter, pad_1);
+    }
+    {
         Shading value;
         layout[n++] = sizeof(value);
         layout[n++] = OFFSET(Shading, color);

@@ -71,6 +71,11 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "choose sampling exact, or leave screen-error out",
     },
     Contradiction {
+        is_in: |all| all.sampling.is_jittered() && all.method() == SamplingMethod::Exact,
+        sentence: "'jitter' cannot be combined with exact sampling or quad adaptive, which take no samples at steps and need none",
+        hint: "choose sampling fixed, or another quad, or leave jitter out",
+    },
+    Contradiction {
         is_in: |all| marches_nearest(all) && is_exact(all),
         sentence: "'recon' adaptive cannot be combined with exact sampling, which solves the field and takes no samples",
         hint: "choose sampling fixed",
@@ -126,7 +131,7 @@ pub(super) const REPLACED: &[Replaced] = &[
             let is_dvr = |options: &SceneOptions| options.mode() == Mode::Dvr;
             flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
         },
-        options: &["sampling", "step", "probe", "recon", "refine"],
+        options: &["sampling", "step", "jitter", "probe", "recon", "refine"],
     },
     // Light of which the file's own mode made no use is not another mode's.
     Replaced {
@@ -160,12 +165,22 @@ pub(super) const REPLACED: &[Replaced] = &[
         by: |flags, _| is_exact(flags),
         options: &[
             "step",
+            "jitter",
             "probe",
             "recon",
             "refine",
             "homogeneity",
             "homogeneity-rule",
         ],
+    },
+    // The adaptive quadrature takes no samples that could be shifted.
+    Replaced {
+        by: |flags, _| is_adaptive(flags),
+        options: &["jitter"],
+    },
+    Replaced {
+        by: |flags, file| flags.sampling.is_jittered() && is_adaptive(file),
+        options: &["quad"],
     },
     // Nearest voxels on the way to a hit are neither probed between nor all there is.
     Replaced {
@@ -228,7 +243,7 @@ pub(super) const REPLACED: &[Replaced] = &[
             let mode = flags.clone().or(file.clone()).mode();
             flags.sampling.screen_error.is_some() && mode != Mode::Dvr
         },
-        options: &["sampling", "step", "probe", "refine", "recon"],
+        options: &["sampling", "step", "jitter", "probe", "refine", "recon"],
     },
     Replaced {
         by: |flags, _| {

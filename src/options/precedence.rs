@@ -67,6 +67,11 @@ mod tests {
             ("aa = 4", "sparse = 4"),
             ("aa = 4", "screen-error = 0.1"),
             ("sampling = 'fixed'", "screen-error = 0.1"),
+            ("jitter = 'hash:1'", "sampling = 'exact'"),
+            (
+                "mode = 'dvr'\njitter = 'hash:1'",
+                "mode = 'dvr'\nquad = 'adaptive'",
+            ),
             ("recon = 'adaptive'", "sampling = 'exact'"),
             ("recon = 'adaptive'", "filter = 'nearest'"),
             ("recon = 'adaptive'", "probe = 'on'"),

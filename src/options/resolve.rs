@@ -31,6 +31,17 @@ impl Resolved {
         seen.options.camera.up = Some(Triple(camera.up_given()));
         seen
     }
+
+    /// Returns the scene as a film has it so many frames later: its samples shifted otherwise.
+    #[must_use]
+    pub fn frames_later(&self, frames: u32) -> Self {
+        let mut later = self.clone();
+        let jitter = &mut later.scene.sampling.jitter;
+        *jitter = jitter.at_frame(frames);
+        let jitter = &mut later.options.sampling.jitter;
+        *jitter = jitter.map(|jitter| jitter.at_frame(frames));
+        later
+    }
 }
 
 impl SceneOptions {

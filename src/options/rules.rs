@@ -14,9 +14,10 @@ use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
 use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
-    AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode,
-    Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling, SamplingMethod,
-    Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
+    AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Jitter, Light,
+    Mode, Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling,
+    SamplingMethod, Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile,
+    View,
 };
 
 /// The options among which a name is unique.
@@ -34,8 +35,8 @@ pub(crate) enum Group {
 pub(crate) enum Decides {
     /// The volume, the picture of it and the camera, or something beside the scene.
     What,
-    /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), or changes
-    /// what the reference is (filter, gradient).
+    /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), changes
+    /// what the reference is (filter, gradient), or goes with whichever steps are chosen (jitter).
     How,
     /// How rays are followed; an error bound decides it.
     HowWithinBound,
@@ -169,6 +170,8 @@ pub(crate) const RULES: &[Rule] = &[
         .default(default_sampling),
     scene("step", HowWithinBound, &[Need::Steps])
         .default(text::<StepVoxels>),
+    scene("jitter", How, &[Need::Steps])
+        .default(text::<Jitter>),
     scene("filter", How, &[])
         .default(text::<Filter>),
     scene("recon", HowWithinBound, &[Need::Modes(ISO, "only a surface has a hit at which to change the filter"), Need::Steps])

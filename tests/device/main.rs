@@ -12,6 +12,7 @@ mod exact;
 mod gradients;
 mod homogeneity;
 mod invariance;
+mod jitter;
 mod metamorphic;
 mod quadrature;
 mod ray_sources;

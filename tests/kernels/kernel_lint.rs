@@ -395,6 +395,7 @@ fn the_switches_are_read_from_the_kernels() {
         of("pass/cast_surface.cl"),
         named(&[
             ("COUNTERS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("NEAREST_MARCH", 2),
@@ -405,6 +406,7 @@ fn the_switches_are_read_from_the_kernels() {
         of("pass/cast_maximum.cl"),
         named(&[
             ("COUNTERS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("PROJECTION", 3),
@@ -417,6 +419,7 @@ fn the_switches_are_read_from_the_kernels() {
             ("COUNTERS", 2),
             ("GRADIENT", 4),
             ("HOMOGENEOUS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("NORMALS", 2),

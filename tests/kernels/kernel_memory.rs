@@ -160,8 +160,8 @@ const MODES: [&str; 22] = [
     "--mode dvr --quad adaptive:0.01 --shading phong",
 ];
 
-/// Fewer rays and more of them, of two of the volumes: they share the casts with the others.
-const RAY_COUNTS: [&str; 8] = [
+/// Fewer rays and more of them, and samples of their own, of two of the volumes: they share the casts with the others.
+const RAY_COUNTS: [&str; 11] = [
     "--mode iso --iso 40% --screen-error 0.5",
     "--mode mip --screen-error 0.3",
     "--mode dvr --shading none --screen-error 0.3",
@@ -170,6 +170,9 @@ const RAY_COUNTS: [&str; 8] = [
     "--mode dvr --shading none --aa 3:adaptive",
     "--mode mip --sparse 3 --refill flood",
     "--mode iso --iso 40% --sparse 4:0.1",
+    "--mode iso --iso 40% --step 0.7 --jitter interleaved:3",
+    "--mode mip --step 1.3 --jitter hash:5 --aa 2",
+    "--mode dvr --shading none --quad midpoint --jitter hash:5:2",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.

@@ -363,6 +363,11 @@ fn nonsense_is_refused_with_a_reason() {
             "only a surface has a hit at which to change the filter",
         ),
         ("sampling = 'exact'\nrecon = 'adaptive'", "takes no samples"),
+        ("sampling = 'exact'\njitter = 'hash:1'", "need none"),
+        (
+            "mode = 'dvr'\nquad = 'adaptive'\njitter = 'interleaved:4'",
+            "need none",
+        ),
         (
             "recon = 'adaptive'\nfilter = 'nearest'",
             "of which every sample already is",
@@ -381,6 +386,8 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
         "sampling = 'fixed'\nrecon = 'adaptive'\nprobe = 'off'",
+        "sampling = 'exact'\njitter = 'none'",
+        "mode = 'dvr'\nquad = 'simpson'\njitter = 'interleaved:4'",
         "recon = 'full'\nfilter = 'nearest'\nprobe = 'on'",
         "carm = 'LAO 10'\nview = 'anterior'",
         "eye = [1, 2, 3]\nzoom = 2\nroll = 10\nazimuth = 5",

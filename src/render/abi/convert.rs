@@ -1,11 +1,11 @@
 //! From the scene's data to the structs and units of kernels; the structs' layouts for the test.
 
-use crate::scene::{Light, Phong, Rgb, Sampling, Tone as SceneTone, Window};
+use crate::scene::{Jitter as SceneJitter, Light, Phong, Rgb, Sampling, Tone as SceneTone, Window};
 use crate::volume::{Rescale, Volume};
 
 use super::constants::KernelEnum;
 use super::structs::{
-    EmissionCast, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid,
+    EmissionCast, Jitter, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid,
 };
 
 /// Name, size and field offsets, in bytes, of every struct that is shared with the kernels.
@@ -16,6 +16,7 @@ pub fn struct_layouts() -> Vec<(&'static str, Vec<u32>)> {
         ("SurfaceCast", SurfaceCast::layout()),
         ("ProjectionCast", ProjectionCast::layout()),
         ("EmissionCast", EmissionCast::layout()),
+        ("Jitter", Jitter::layout()),
         ("Shading", Shading::layout()),
         ("Tone", Tone::layout()),
     ]
@@ -29,6 +30,33 @@ fn rgb0(color: Rgb) -> [f32; 4] {
 /// The step in mm.
 pub fn step_mm(sampling: &Sampling, volume: &Volume) -> f64 {
     sampling.step.get() * volume.geometry().smallest_spacing_mm()
+}
+
+/// How the samples of rays are shifted; `None`: they are not.
+pub fn jitter(jitter: SceneJitter) -> Option<Jitter> {
+    let (_, parts) = jitter.shift(0, 0);
+    let offsets = |side, [along_x, along_y]: [u32; 2], start| Jitter {
+        parts,
+        hashed: 0,
+        side,
+        along_x,
+        along_y,
+        start,
+        pad_0: 0,
+        pad_1: 0,
+    };
+    match jitter {
+        SceneJitter::None => None,
+        SceneJitter::Shift(shift) => Some(offsets(1, [0, 0], shift.parts())),
+        SceneJitter::Interleaved(pattern) => {
+            let start = pattern.gained();
+            Some(offsets(pattern.side(), pattern.gains(), start))
+        }
+        SceneJitter::Hash { seed, frame } => Some(Jitter {
+            hashed: 1,
+            ..offsets(1, [0, 0], SceneJitter::hash_key(seed, frame))
+        }),
+    }
 }
 
 /// A physical value in the device's stored units; beyond single precision, its end.

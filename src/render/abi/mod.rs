@@ -10,7 +10,11 @@ pub use constants::{
     BRICK, CHECKED_OF, CLASS_BITS, Class, Filling, KernelEnum, LISTED_SQUARE, MARK_CAST, MARK_NEXT,
     MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, Rays, SMOOTH_PARTS, SeenBy,
 };
-pub use convert::{StoredIso, shading, step_mm, stored, stored_window, struct_layouts, tone};
+pub use convert::{
+    StoredIso, jitter, shading, step_mm, stored, stored_window, struct_layouts, tone,
+};
 pub use lanes::Lanes;
-pub use structs::{EmissionCast, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid};
+pub use structs::{
+    EmissionCast, Jitter, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid,
+};
 pub use variant::{Variant, voxel_cl_name};

@@ -125,6 +125,23 @@ device_struct! {
 }
 
 device_struct! {
+    /// How the samples of rays are shifted.
+    Jitter {
+        /// The parts of a step in which shifts are counted.
+        parts: u32,
+        /// Whether a ray's parts are a hash; else they are one of `side` × `side` offsets.
+        hashed: u32,
+        side: u32,
+        along_x: u32,
+        along_y: u32,
+        /// The first ray's parts, or what goes into all hashes.
+        start: u32,
+        pad_0: u32,
+        pad_1: u32,
+    }
+}
+
+device_struct! {
     /// The light and how a surface reflects it.
     Shading {
         color: [f32; 4],

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, Wanted};
 use crate::gpu::{Device, FrameTimes, PassTime, Timings};
 use crate::octree::Octree;
-use crate::render::abi::{Lanes, Variant, tone};
+use crate::render::abi::{Jitter, Lanes, Variant, jitter, tone};
 use crate::render::occupancy::{Criterion, OccupancyCache, OccupancyTables};
 use crate::render::passes::{CastInputs, Passes, Run, tone_curve};
 use crate::render::resources::{
@@ -306,6 +306,7 @@ impl<'a> Renderer<'a> {
                 volume: on_device,
                 occupancy,
                 clip: &clip,
+                jitter: jitter_of(scene),
             },
             gradient: DeviceGradient::of(scene.gradient, directions),
         };
@@ -320,6 +321,14 @@ impl<'a> Renderer<'a> {
             planes,
             classify_ms,
         })
+    }
+}
+
+/// How the samples of a scene's rays are shifted; where none are taken at fixed steps there is nothing to shift.
+fn jitter_of(scene: &Scene) -> Option<Jitter> {
+    match scene.sampling_method() {
+        SamplingMethod::Fixed => jitter(scene.sampling.jitter),
+        SamplingMethod::Exact => None,
     }
 }
 

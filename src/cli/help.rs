@@ -19,6 +19,8 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "caps", "close the surface where the volume ends"),
     ("", "refine", "how a hit is refined"),
     ("", "recon", "the filter at hits alone"),
+    ("", "jitter", "Shift each ray's samples, against bands"),
+    ("render", "check-sampling", "Say whether the step will do"),
     ("", "diffuse", "light reflected in all directions"),
     ("", "gradient-scale", "voxels from one to the next"),
     ("", "refill", "the blocks that are cast too"),

@@ -6,7 +6,7 @@ use crate::common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 21] = [
+const EXPERIMENTS: [&str; 22] = [
     "vessels",
     "pareto",
     "speed",
@@ -28,6 +28,7 @@ const EXPERIMENTS: [&str; 21] = [
     "b17",
     "b18",
     "tolerance",
+    "check-sampling",
 ];
 
 #[test]

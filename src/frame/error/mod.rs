@@ -16,7 +16,7 @@ mod spread;
 mod ssim;
 mod value;
 
-pub use color::{ColorError, color_error};
+pub use color::{ColorError, color_error, differing_share};
 pub use entry::Entry;
 pub use figures::{Figures, Scale, figures};
 pub use flip::flip;

@@ -14,6 +14,7 @@ mod processor;
 mod program;
 mod ranking;
 mod reference_cache;
+mod sampling_check;
 mod settings;
 
 pub use borderline::{Borderline, Closeness, excuse_dips};
@@ -30,4 +31,5 @@ pub use peer::{Peer, PeerFrame, PeerScene, PeerTime, Readiness};
 pub use program::{hash_kernels, hash_program};
 pub use ranking::RankingMetric;
 pub use reference_cache::{ReferenceCache, ReferenceFrame};
+pub use sampling_check::SamplingCheck;
 pub use settings::{built_in, grid};

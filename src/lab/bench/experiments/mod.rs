@@ -1,6 +1,7 @@
 //! The experiments, a file each; those that repeat a paper's are named after its first author, year and
 //! table.
 
+mod check_sampling;
 mod convergence;
 mod gradients;
 mod lesar_2015_figure_5;
@@ -37,6 +38,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
     sparse_rays::EXPERIMENT,
     gradients::EXPERIMENT,
     tolerance::EXPERIMENT,
+    check_sampling::EXPERIMENT,
     scharsach_2005_table_1::EXPERIMENT,
     scharsach_2005_table_2::EXPERIMENT,
     scharsach_2005_figure_4::EXPERIMENT,

@@ -1,6 +1,7 @@
 //! One setting in one scene, measured: its error against the reference, its time beside that of
 //! others; and another program, measured as a setting is.
 
+mod banding;
 mod borderline;
 mod counts;
 mod evaluation;
@@ -17,6 +18,7 @@ mod reference_cache;
 mod sampling_check;
 mod settings;
 
+pub use banding::Banding;
 pub use borderline::{Borderline, Closeness, excuse_dips};
 pub use counts::Counts;
 pub use evaluation::{

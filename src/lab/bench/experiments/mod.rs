@@ -14,6 +14,7 @@ mod ruijters_2006_classification;
 mod ruijters_2006_figure_6;
 mod ruijters_2006_termination;
 mod scharsach_2005_figure_4;
+mod scharsach_2005_figure_6;
 mod scharsach_2005_table_1;
 mod scharsach_2005_table_2;
 mod sparse;
@@ -42,6 +43,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
     scharsach_2005_table_1::EXPERIMENT,
     scharsach_2005_table_2::EXPERIMENT,
     scharsach_2005_figure_4::EXPERIMENT,
+    scharsach_2005_figure_6::EXPERIMENT,
     ruijters_2006_figure_6::EXPERIMENT,
     ruijters_2006_termination::EXPERIMENT,
     ruijters_2006_classification::EXPERIMENT,

@@ -54,6 +54,13 @@ impl Banding {
         Ok(Self::of_errors(&errors, frame.size.width() as usize))
     }
 
+    /// The share of the errors' deviation from their mean that squares of pixels have in common: 1 for bands far wider
+    /// than a square, 1/8 for errors that have nothing to do with each other; `None` where all errors are equal.
+    pub fn coarse_share(&self) -> Option<f64> {
+        let variance = self.rmse * self.rmse - self.mean * self.mean;
+        (variance > 0.0).then(|| self.coarse_rmse / variance.sqrt())
+    }
+
     /// The banding of errors, row by row.
     fn of_errors(errors: &[f64], width: usize) -> Self {
         let count = errors.len().max(1) as f64;
@@ -131,6 +138,7 @@ mod tests {
         // What all pixels share is no band.
         let even = of(|_, _| 0.25);
         assert_eq!((even.mean, even.rmse, even.coarse_rmse), (0.25, 0.25, 0.0));
-        assert_eq!(even.correlation, None);
+        assert_eq!((even.correlation, even.coarse_share()), (None, None));
+        assert!(bands.coarse_share().unwrap() > 0.85);
     }
 }

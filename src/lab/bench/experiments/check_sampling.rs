@@ -50,14 +50,14 @@ const COLUMNS: [(&str, &str, Shown); 9] = [
 const SCENES_A_VOLUME: u64 = 5;
 
 /// The steps, in voxels, from which a scene's is picked.
-const STEPS: [f64; 2] = [0.1, 4.0];
+const STEPS: [f64; 2] = [0.25, 4.0];
 
 /// The share of wrong verdicts beyond which the experiment fails.
 const MAX_WRONG: f64 = 0.2;
 
 fn scenes(preset: Preset) -> u64 {
     match preset {
-        Preset::Quick => 30,
+        Preset::Quick => 40,
         Preset::Usual => 200,
         Preset::Full => 1000,
     }

@@ -11,7 +11,7 @@ use super::super::{Bench, Conditions, Dataset, Experiment, Illustration, Outcome
 use crate::error::Result;
 use crate::frame::{DEPTH, Frame, Layer, Wanted};
 use crate::lab::measure::{Banding, Times};
-use crate::lab::report::{Cell, Shown, Table};
+use crate::lab::report::{Shown, Table};
 use crate::reference;
 use crate::render::Renderer;
 use crate::scene::{
@@ -71,7 +71,7 @@ fn run(bench: &Bench) -> Result<Outcome> {
         conditions: Conditions::usual(bench),
         ..Outcome::of(Table::new(&COLUMNS))
     };
-    for volume in LazyDataset::in_one_size(bench, PhantomKind::Blob) {
+    for volume in LazyDataset::in_one_size(bench, PhantomKind::Vessels) {
         for (case, scene) in cases(bench, volume.get()?)? {
             let key = format!("{}/{case}", volume.name);
             let measured = bench.unit(&key, || measure(bench, volume.get()?, &scene))?;
@@ -204,7 +204,7 @@ fn tabulate(outcome: &mut Outcome, volume: &str, case: &str, measured: &[Measure
             banding.mean.into(),
             banding.rmse.into(),
             banding.coarse_rmse.into(),
-            Cell::from((banding.rmse > 0.0).then(|| banding.coarse_rmse / banding.rmse)),
+            banding.coarse_share().into(),
             banding.correlation.into(),
         ]);
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether two builds of angioray draw the same pictures, bit by bit: 60 scenes, every layer of each.
+# Whether two builds of angioray draw the same pictures, bit by bit: 62 scenes, every layer of each.
 #
 #   scripts/same-pictures.sh OLD NEW     two programs, such as target/release/angioray of two checkouts
 #
@@ -77,6 +77,8 @@ v8 --mode dvr --quad preintegrated --shading phong --gradient precomputed
 v8 --mode dvr --quad adaptive:0.002
 v8 --mode dvr --quad adaptive --shading phong --traverse revelles
 v8 --mode dvr --quad simpson --skip off
+v8 --mode iso --light 0.3,-0.5,0.8 --ambient 0.2 --specular 0.4
+v8 --mode dvr --shading blinn-phong --light -1,0.2,0.5 --quad adaptive
 v8 --mode dvr --homogeneity 0.02
 v8 --mode dvr --homogeneity 0.02 --traverse uniform --quad preintegrated
 v8 --mode dvr --filter nearest --quad preintegrated

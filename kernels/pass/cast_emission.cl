@@ -1,7 +1,7 @@
 // Emission and absorption along each ray, front to back (Levoy 1988; Max 1995), at a fixed step.
 //
 // A panel is a segment between two samples of the lattice, the last and shorter one between the
-// last full step and the exit; QUADRATURE says at which nodes it is sampled and what they weigh
+// last full step and the exit, and with JITTERED (`lib/ray/jitter.clh`) a shorter first one; QUADRATURE says at which nodes it is sampled and what they weigh
 // (lib/light/quadrature.clh, lib/light/preintegrated.clh). Panels tile the ray, so that opacity depends on path
 // length alone. A panel is left out where it lies in transparent nodes wholly: it would add exactly
 // nothing. With HOMOGENEOUS, the samples of a leaf of that class are one panel of the value that stands for
@@ -15,7 +15,8 @@
 // ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0; with COUNTERS
 // the samples taken and the nodes tested.
 #include "lib/light/emission.clh"
-#include "lib/skip/march.clh"
+#include "lib/ray/jitter.clh"
+#include "lib/skip/segment_march.clh"
 
 // With the nearest filter no value lies between two samples' own: there is nothing to integrate.
 #define INTEGRATES (QUADRATURE == QUADRATURE_PREINTEGRATED && FILTER_LINEAR)
@@ -205,7 +206,7 @@ static inline void emit_along(VOXELS voxels, const PanelContext *context, Accumu
 #endif
 
 kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NODE_AVERAGE CLIP_PLANES, EMITTER_DIRECTIONS
-                          VolumeGrid volume, RAY_SOURCE, EmissionCast cast, Shading shading, EMISSION_PLANES COUNTER_PLANES)
+                          VolumeGrid volume, RAY_SOURCE, EmissionCast cast JITTER, Shading shading, EMISSION_PLANES COUNTER_PLANES)
 {
     Pixels pixels = RAY_PIXELS();
     VisibleRays visible = visible_rays(pixels, RAY_OF(pixels), volume, CLIP_GIVEN);
@@ -214,7 +215,8 @@ kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NOD
     Ints nodes_tested = INTS(0);
     if (ANY(visible.meets)) {
         SkipGrid grid = skip_by_class(node_class, levels, cells);
-        SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, cast.step_mm, 1, !HOMOGENEOUS);
+        Steps spacing = STEPS(cast.step_mm, pixels);
+        SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, spacing, 1, !HOMOGENEOUS);
         Emitter emitter = {{knot_values, knot_colors, cast.knots}, SUMS_GIVEN, cast, volume, shading,
                            direction_to_eye(visible.ray) EMITTER_DIRECTIONS_GIVEN};
         PanelContext context;

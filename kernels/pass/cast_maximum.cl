@@ -6,6 +6,7 @@
 // PROJECTION_MEAN: the composite trapezoid rule, every sample needed.
 // PROJECTION_LOCAL: the first local maximum >= threshold, else the maximum (Sato et al. 1998);
 // either end counts when the value falls away from it.
+// With JITTERED each ray's samples are shifted (`lib/ray/jitter.clh`).
 //
 // Reads the voxels, the clip planes (index space) and, per octree node, its range and its CLASS_*
 // (CLASS_BELOW: nowhere above `floor`). Writes per ray kind (surface where the ray meets the
@@ -13,7 +14,8 @@
 // the mean); with COUNTERS the samples taken and the nodes tested.
 #include "lib/find/peak.clh"
 #include "lib/ray/cast_planes.clh"
-#include "lib/skip/march.clh"
+#include "lib/ray/jitter.clh"
+#include "lib/skip/segment_march.clh"
 
 #ifndef PROJECTION
 #error "PROJECTION, which value is wanted, is given by the host"
@@ -127,7 +129,7 @@ static inline void march_to_maximum(VOXELS voxels, MaximumState *state, SegmentM
 }
 #endif
 
-kernel void cast_maximum(VOXELS voxels, SKIP_BY_RANGE, CLIP_PLANES, VolumeGrid volume, RAY_SOURCE, ProjectionCast cast,
+kernel void cast_maximum(VOXELS voxels, SKIP_BY_RANGE, CLIP_PLANES, VolumeGrid volume, RAY_SOURCE, ProjectionCast cast JITTER,
                          global uint *kind, global float *value DEPTH_PLANE COUNTER_PLANES)
 {
     Pixels pixels = RAY_PIXELS();
@@ -137,12 +139,13 @@ kernel void cast_maximum(VOXELS voxels, SKIP_BY_RANGE, CLIP_PLANES, VolumeGrid v
     Ints samples = INTS(0);
     Ints nodes_tested = INTS(0);
     if (ANY(visible.meets)) {
+        Steps spacing = STEPS(cast.step_mm, pixels);
 #if PROJECTION == PROJECTION_MEAN
-        Lattice lattice = ray_lattice(volume, visible.ray, visible.interval, cast.step_mm);
+        Lattice lattice = ray_lattice(volume, visible.ray, visible.interval, spacing);
         found = mean_along(voxels, &lattice, visible.meets, &samples);
 #else
         SkipGrid grid = skip_by_range(node_class, node_range, levels);
-        SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, cast.step_mm, 0, true);
+        SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, spacing, 0, true);
         MaximumState state = maximum_start(cast);
         march_to_maximum(voxels, &state, &march);
         found = cast.sign * state.max;

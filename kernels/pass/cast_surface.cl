@@ -8,6 +8,8 @@
 // them are on two sides the crossing is that of the field, if it has one there (`lib/find/approach.clh`); no peak is
 // searched for.
 //
+// With JITTERED each ray's samples are shifted (`lib/ray/jitter.clh`).
+//
 // Reads the voxels, the clip planes (index space), per octree node its CLASS_*, and a bit per cell that
 // the surface may cross. Writes per ray hit_mm (t; +inf: none) and kind; with LAYERS depth (mm from the eye)
 // and value at the hit (stored units; 0 without a hit); with COUNTERS the samples taken and the nodes tested.
@@ -15,7 +17,8 @@
 #include "lib/find/peak.clh"
 #include "lib/find/refine.clh"
 #include "lib/ray/cast_planes.clh"
-#include "lib/skip/march.clh"
+#include "lib/ray/jitter.clh"
+#include "lib/skip/segment_march.clh"
 
 // What a surface cast knows of its rays so far.
 typedef struct {
@@ -148,13 +151,14 @@ static inline void march_to_surface(VOXELS voxels, SurfaceState *state, SegmentM
     }
 }
 
-kernel void cast_surface(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RAY_SOURCE, SurfaceCast cast,
+kernel void cast_surface(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RAY_SOURCE, SurfaceCast cast JITTER,
                          global float *hit_mm, global uint *kind DEPTH_PLANE VALUE_PLANE COUNTER_PLANES)
 {
     Pixels pixels = RAY_PIXELS();
     VisibleRays visible = visible_rays(pixels, RAY_OF(pixels), volume, CLIP_GIVEN);
     SurfaceState state = surface_start(cast, cast.caps ? visible.interval.by_face : NO_LANE);
-    SegmentMarch march = segment_march(volume, skip_by_class(node_class, levels, cells), &visible, cast.traverse, cast.step_mm, 0, true);
+    Steps spacing = STEPS(cast.step_mm, pixels);
+    SegmentMarch march = segment_march(volume, skip_by_class(node_class, levels, cells), &visible, cast.traverse, spacing, 0, true);
     march_to_surface(voxels, &state, &march);
     Floats hit_from_entry_mm = FLOATS(0.0f); // a cap lies there
     Mask crossed = state.kind == KIND_SURFACE;

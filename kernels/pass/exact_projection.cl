@@ -245,7 +245,7 @@ static inline void project_cells(ProjectionState *state, CellMarch *march, VOXEL
 static inline ProjectionState project(VOXELS voxels, SkipGrid grid, VolumeGrid volume, const VisibleRays *rays, ProjectionCast cast,
                                       Ints *cells_read, Ints *nodes_tested)
 {
-    CellMarch march = cell_march(volume, grid, rays, cast.traverse);
+    CellMarch march = cell_march(volume, grid, rays, cast.traverse, true);
     ProjectionState state = projection_start(cast);
 #if PROJECTION == PROJECTION_EXTREMUM
     // First where the greatest values are to be expected: all else must exceed what rays reach there.

@@ -2,12 +2,12 @@
 // FILLING_GRID: bilinearly from the corners of their blocks on a grid. FILLING_BLOCKS: as the first those with MARK_FILLED, as
 // the second those whose marks say that they belong to a block of their own (marks.clh).
 //
-// An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value and
-// normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
+// An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value,
+// occlusion and normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
 // what a pixel meets in its opacity.
 //
-// Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE, NORMAL,
-// COUNTERS, CERTIFICATE).
+// Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE,
+// OCCLUSION, NORMAL, COUNTERS, CERTIFICATE).
 #include "lib/ray/blocks.clh"
 #include "lib/ray/planes.clh"
 
@@ -31,6 +31,11 @@
 #else
 #define VALUE_PLANE
 #endif
+#if WITH_OCCLUSION
+#define OCCLUSION_PLANE , global float *occlusion
+#else
+#define OCCLUSION_PLANE
+#endif
 #if WITH_NORMAL
 #define NORMAL_PLANE , global float4 *normal
 #else
@@ -48,7 +53,7 @@
 #endif
 
 kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const global uint *cast COLOR_PLANE KIND_PLANE DEPTH_PLANE
-                        VALUE_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
+                        VALUE_PLANE OCCLUSION_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
@@ -121,6 +126,13 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     phi = meets ? mean_of(value, corners.place, weight) : phi;
 #endif
     SCATTER(pixels.inside, value, pixels.index, phi);
+#endif
+#if WITH_OCCLUSION
+    Floats kept = FLOATS(0.0f);
+#if FILLING != FILLING_EMPTY
+    kept = meets ? mean_of(occlusion, corners.place, weight) : kept;
+#endif
+    SCATTER(pixels.inside, occlusion, pixels.index, kept);
 #endif
 #if WITH_NORMAL
     Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};

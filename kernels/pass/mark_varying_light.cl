@@ -57,17 +57,21 @@ static inline void pass_layer(LightRange *range, LightRange of, float2 opacity)
     range->high = fmax(mixed(range->high, of.high, opacity.x), mixed(range->high, of.high, opacity.y));
 }
 
-// What shading makes of a colour, at least and at most: it times x, and it times y plus z.
-static inline LightRange reflected(LightRange light, float4 reflects)
+// What shading makes of a colour: it times `least` at least, and it times `most` plus `added` at most.
+typedef struct {
+    float4 least, most, added;
+} Reflects;
+
+static inline LightRange reflected(LightRange light, Reflects reflects)
 {
-    light.low.xyz *= reflects.x;
-    light.high.xyz = light.high.xyz * reflects.y + reflects.z;
+    light.low.xyz *= reflects.least.xyz;
+    light.high.xyz = light.high.xyz * reflects.most.xyz + reflects.added.xyz;
     return light;
 }
 
 // The light of all rays of a frustum; `per_slice`: how far they go in a slice of cells, the shortest and the longest, in unit
 // lengths.
-static inline LightRange frustum_light(Packet packet, const SkipGrid *grid, const global float4 *leaf_light, float2 per_slice, float4 reflects,
+static inline LightRange frustum_light(Packet packet, const SkipGrid *grid, const global float4 *leaf_light, float2 per_slice, Reflects reflects,
                                        bool is_cut)
 {
     LightRange range = {(float4)(0.0f), (float4)(0.0f)};
@@ -108,10 +112,12 @@ static inline float2 mm_per_slice(Ray corners, Floats speed)
 }
 
 kernel void mark_varying_light(SKIP_BY_CLASS, const global float4 *leaf_light, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels,
-                               uint widest, float max_error, float unit_length_mm, float4 reflects, global uint *cast)
+                               uint widest, float max_error, float unit_length_mm, float4 reflects_least, float4 reflects_most, float4 reflects_added,
+                               global uint *cast)
 {
     SkipGrid grid = skip_by_class(node_class, levels, cells);
     ClipPlanes clip = CLIP_GIVEN;
+    Reflects reflects = {reflects_least, reflects_most, reflects_added};
     BlockWalk walk = block_walk(spacing, block_levels);
     Block block;
     while (block_next(&walk, rays, &block)) {

@@ -1,15 +1,25 @@
 // The colour of each hit surface: linear light, premultiplied, opaque where something was hit.
 //
-// Reads kind of cast_surface and, with SHADED, normal of surface_normal. Writes color.
+// Reads kind of a surface's cast and, with SHADED, its hit_mm and normal of surface_normal; with OCCLUSION too, the occlusion of
+// light from everywhere, which shows by `strength`. Writes color.
 #include "lib/ray/planes.clh"
 #include "lib/ray/source.clh"
 #include "lib/light/shade.clh"
 
-kernel void shade_surface(RAY_SOURCE, Shading shading, const global uint *kind
 #if SHADED
-                          , const global float4 *normal
+#define HITS const global float *hit_mm,
+#define NORMAL_PLANE , const global float4 *normal
+#else
+#define HITS
+#define NORMAL_PLANE
 #endif
-                          , global float4 *color)
+#if SHADED && OCCLUSION
+#define OCCLUSION_PLANE , float strength, const global float *occlusion
+#else
+#define OCCLUSION_PLANE
+#endif
+
+kernel void shade_surface(RAY_SOURCE, Shading shading, HITS const global uint *kind NORMAL_PLANE OCCLUSION_PLANE, global float4 *color)
 {
     Pixels pixels = RAY_PIXELS();
     Mask hit = read_ints(kind, pixels) != KIND_NOTHING;
@@ -17,10 +27,16 @@ kernel void shade_surface(RAY_SOURCE, Shading shading, const global uint *kind
     if (ANY(hit)) {
         Floats3 rgb = {FLOATS(shading.color.x), FLOATS(shading.color.y), FLOATS(shading.color.z)};
 #if SHADED
-        Floats4 n = read_float4(normal, pixels);
-        Floats3 facing = {n.x, n.y, n.z};
         Ray ray = RAY_OF(pixels);
-        rgb = reflect_light(shading, rgb, facing, direction_to_eye(ray));
+        Floats mm = read_floats(hit_mm, pixels);
+        Pair3 at = ray_at(ray, hit ? mm : FLOATS(0.0f));
+        Floats4 n = read_float4(normal, pixels);
+        LitPoint point = {{at.x.high, at.y.high, at.z.high}, {n.x, n.y, n.z}, direction_to_eye(ray)};
+        Floats reached = FLOATS(1.0f);
+#if OCCLUSION
+        reached -= strength * read_floats(occlusion, pixels);
+#endif
+        rgb = reflect_lights(&shading, rgb, point, reached);
 #endif
         seen.x = hit ? rgb.x : seen.x;
         seen.y = hit ? rgb.y : seen.y;

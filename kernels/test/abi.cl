@@ -85,18 +85,41 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, pad);
     }
     {
+        LightSource value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(LightSource, place);
+        layout[n++] = OFFSET(LightSource, diffuse);
+        layout[n++] = OFFSET(LightSource, specular);
+        layout[n++] = OFFSET(LightSource, shines_from);
+        layout[n++] = OFFSET(LightSource, pad_0);
+        layout[n++] = OFFSET(LightSource, pad_1);
+        layout[n++] = OFFSET(LightSource, pad_2);
+    }
+    {
+        Jitter value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(Jitter, parts);
+        layout[n++] = OFFSET(Jitter, hashed);
+        layout[n++] = OFFSET(Jitter, side);
+        layout[n++] = OFFSET(Jitter, along_x);
+        layout[n++] = OFFSET(Jitter, along_y);
+        layout[n++] = OFFSET(Jitter, start);
+        layout[n++] = OFFSET(Jitter, pad_0);
+        layout[n++] = OFFSET(Jitter, pad_1);
+    }
+    {
         Shading value;
         layout[n++] = sizeof(value);
         layout[n++] = OFFSET(Shading, color);
-        layout[n++] = OFFSET(Shading, toward_light);
         layout[n++] = OFFSET(Shading, ambient);
-        layout[n++] = OFFSET(Shading, diffuse);
-        layout[n++] = OFFSET(Shading, specular);
+        layout[n++] = OFFSET(Shading, world_row_x);
+        layout[n++] = OFFSET(Shading, world_row_y);
+        layout[n++] = OFFSET(Shading, world_row_z);
+        layout[n++] = OFFSET(Shading, lights);
+        layout[n++] = OFFSET(Shading, light_count);
         layout[n++] = OFFSET(Shading, shininess);
         layout[n++] = OFFSET(Shading, reflection);
-        layout[n++] = OFFSET(Shading, pad_0);
-        layout[n++] = OFFSET(Shading, pad_1);
-        layout[n++] = OFFSET(Shading, pad_2);
+        layout[n++] = OFFSET(Shading, shaded_from);
     }
     {
         Tone value;

@@ -21,6 +21,9 @@ kernel void peak(uint count, uint4 size, VOXELS voxels, float4 start, float4 dir
     lattice.dir.y = dir.y;
     lattice.dir.z = dir.z;
     lattice.length_mm = length_mm;
+#if JITTERED
+    lattice.ahead = 0.0f;
+#endif
     float sign = rays[i].z;
     RayPoint a = ray_point(voxels, &lattice, sign, 0.0f, true, rays[i].x);
     RayPoint b = ray_point(voxels, &lattice, sign, 0.0f, true, rays[i].y);

@@ -9,7 +9,15 @@ static inline uint4 as_numbers(Ints3 cell)
     return (uint4)((uint)cell.x, (uint)cell.y, (uint)cell.z, 0u);
 }
 
-kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
+#if JITTERED
+#define AHEAD , float ahead
+#define STEPS_GIVEN {step_mm, ahead}
+#else
+#define AHEAD
+#define STEPS_GIVEN {step_mm}
+#endif
+
+kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm AHEAD,
                   const global float4 *origins, const global float4 *dirs,
                   global uint4 *sizes, global float4 *points, global uint4 *cells,
                   global uint4 *spans_out, global uint4 *lasts)
@@ -34,7 +42,8 @@ kernel void spans(uint count, uint room, uint4 size, uint level, float step_mm,
     uint samples = 0u;
     uint spans_found = 0u;
     if (interval.enter <= interval.exit) {
-        Lattice lattice = ray_lattice(volume, ray, interval, step_mm);
+        Steps steps = STEPS_GIVEN;
+        Lattice lattice = ray_lattice(volume, ray, interval, steps);
         samples = (uint)lattice.last + 1u;
         for (uint k = 0u; k < samples && k < room; k++) {
             Floats t = lattice_t(&lattice, (int)k);

@@ -4,8 +4,26 @@ Ours lights every ray along itself (a headlight) or from one direction, on both 
 """
 from vtkmodules.vtkRenderingCore import vtkLight
 
+from peer import Unsupported
+
+WHITE = [1, 1, 1]
+
 #: Blinn's exponent for about the lobe of Phong's, the light being near the eye.
 BLINN_OVER_PHONG = 4.0
+
+
+def toward_light(request):
+    """Toward the scene's light, or None for a headlight; refused are lights and material that VTK is not given."""
+    lights, phong = request["lights"], request["phong"]
+    if not phong:
+        return None
+    if len(lights) != 1 or "at" in lights[0] or lights[0]["color"] != WHITE:
+        raise Unsupported("VTK is given one white light, a headlight or one far away")
+    if any(phong[f"{term}_color"] != WHITE for term in ("ambient", "diffuse", "specular")):
+        raise Unsupported("VTK is given a material without colours of its own")
+    if request["shaded_from"] > 0:
+        raise Unsupported("VTK shades a medium whatever its gradient")
+    return lights[0].get("toward")
 
 
 def add_light(renderer, toward_light, at_eye):

@@ -3,7 +3,7 @@ from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 from vtk_camera import depth_mm
-from vtk_light import add_light, set_phong
+from vtk_light import add_light, set_phong, toward_light
 
 
 class Mesh:
@@ -31,7 +31,7 @@ class Mesh:
             self.notes += [note] if note else []
         else:
             prop.LightingOff()
-        add_light(renderer, request["toward_light"], at_eye="fov_deg" in request["camera"])
+        add_light(renderer, toward_light(request), at_eye="fov_deg" in request["camera"])
         if request["caps"] and volume.touches_faces(request["iso"]):
             self.notes.append("surfaces are open at the volume's faces: no caps")
         renderer.AddActor(actor)

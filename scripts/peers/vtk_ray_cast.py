@@ -11,7 +11,7 @@ from vtkmodules.vtkRenderingVolume import vtkFixedPointVolumeRayCastMapper, vtkG
 
 from peer import Unsupported
 from vtk_camera import depth_mm
-from vtk_light import add_light, set_phong
+from vtk_light import add_light, set_phong, toward_light
 
 
 def show(renderer, volume, mapper, prop):
@@ -83,11 +83,11 @@ class FixedPoint:
         set_appearance(mapper, prop, volume, request)
         if request["phong"]:
             prop.ShadeOn()
-            if request["toward_light"] is None and "fov_deg" in request["camera"]:
+            if toward_light(request) is None and "fov_deg" in request["camera"]:
                 self.notes.append("its light falls along the view direction, not along each ray")
             note = set_phong(prop, request["phong"], has="blinn-phong")
             self.notes += [note] if note else []
-        add_light(renderer, request["toward_light"], at_eye=False)
+        add_light(renderer, toward_light(request), at_eye=False)
         show(renderer, volume, mapper, prop)
 
     def rgba(self, window):
@@ -123,7 +123,7 @@ class Gpu:
         set_appearance(self.mapper, prop, volume, request)
         add_light(renderer, None, at_eye=False)
         if request["phong"]:
-            if request["toward_light"] is not None:
+            if toward_light(request) is not None:
                 raise Unsupported("the GPU mapper is given a headlight only: it adds others' ambient light without the colour")
             if "ortho_height_mm" in request["camera"]:
                 self.notes.append("its light falls from one point, not along each ray")

@@ -125,6 +125,8 @@ pub struct Rendered {
     pub rays_per_round: Vec<u64>,
     /// How much adaptive anti-aliasing may differ from the whole of it.
     pub sample_check: Option<SampleCheck>,
+    /// How far away the focal plane of the lens is along the view axis, mm; of a single picture.
+    pub focus_mm: Option<f64>,
     pub device: DeviceStats,
     /// The times of the frame, without reading and encoding.
     pub times_ms: Times,
@@ -267,6 +269,7 @@ impl Caster<'_> {
                     frame: rendering.frame,
                     rays_per_round: rendering.rays_per_round,
                     sample_check: rendering.sample_check,
+                    focus_mm: rendering.focus_mm,
                     device: device.info().into(),
                     times_ms: Times {
                         octree: *octree_ms,
@@ -317,6 +320,7 @@ fn by_reference(
         frame,
         rays_per_round: vec![rays],
         sample_check: None,
+        focus_mm: None,
         device: reference_stats(),
         times_ms: Times {
             render: render_ms,

@@ -18,6 +18,7 @@ mod progress;
 mod render;
 mod repeat;
 mod replay;
+mod sampling_check;
 mod scene;
 mod source;
 mod stats;

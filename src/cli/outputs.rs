@@ -23,11 +23,13 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, coverage, separated by commas, or all that the mode has. In dvr depth, normal and
-        /// value are means along the ray, weighted as its light is, where the opacity is at least 0.01.
-        /// cast is 0 where --sparse filled a pixel; coverage is the share of a pixel's rays that hit.
+        /// certificate, coverage, occlusion, coc, separated by commas, or all that the mode has. In dvr depth,
+        /// normal and value are means along the ray, weighted as its light is, where the opacity is at least
+        /// 0.01. cast is 0 where --sparse filled a pixel; coverage is the share of a pixel's rays that hit.
         /// certificate is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed steps on a
-        /// device prove nothing: 2 everywhere
+        /// device prove nothing: 2 everywhere. occlusion is for iso too: the share of the light from
+        /// everywhere that --ao finds kept from the hit. coc is for iso and dvr: the diameter of the circle
+        /// of confusion of --dof in pixels, above 0 behind the focal plane
         #[arg(long, value_name = "LIST|all")]
         aov: Layers,
 
@@ -265,9 +267,21 @@ pub enum Layers {
 }
 
 impl Layers {
-    /// Whether pictures of a mode have the layer: certificates exist for surfaces alone.
+    /// Why pictures of a mode do not have a layer; `None`: they do.
+    fn missing(layer: Layer, mode: Mode) -> Option<&'static str> {
+        match layer {
+            Layer::Certificate if mode != Mode::Iso => {
+                Some("only a surface is proven to be hit or missed")
+            }
+            Layer::Occlusion if mode != Mode::Iso => Some("only a surface keeps light from itself"),
+            Layer::Coc if !mode.is_lit() => Some("a projection has no depth to focus on"),
+            _ => None,
+        }
+    }
+
+    /// Whether pictures of a mode have the layer.
     fn is_of(layer: Layer, mode: Mode) -> bool {
-        layer != Layer::Certificate || mode == Mode::Iso
+        Self::missing(layer, mode).is_none()
     }
 
     /// The layers of a picture of this mode.
@@ -283,8 +297,9 @@ impl Layers {
             Self::Named(layers) => match layers.iter().find(|layer| !Self::is_of(**layer, mode)) {
                 None => Ok(layers.clone()),
                 Some(stray) => Err(Error::usage(format!(
-                    "the layer '{}' cannot be combined with mode '{mode}': only a surface is proven to be hit or missed",
-                    stray.name()
+                    "the layer '{}' cannot be combined with mode '{mode}': {}",
+                    stray.name(),
+                    Self::missing(*stray, mode).unwrap_or_default()
                 ))
                 .hint("leave it out, or write all for every layer that the mode has")),
             },

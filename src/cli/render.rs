@@ -6,8 +6,9 @@ use crate::VERSION;
 use crate::batch::Provenance;
 use crate::error::Result;
 use crate::frame::{self, Frame, Wanted};
-use crate::lab::measure::Counts;
+use crate::lab::measure::{Counts, SamplingCheck};
 use crate::lab::tolerance::{Choice, Cost, ToleranceStats};
+use crate::number_text::concise;
 use crate::options::Resolved;
 use crate::render::{GradientFigures, SampleCheck};
 use crate::scene::SamplingMethod;
@@ -16,6 +17,7 @@ use super::backend::{Backend, Rendered};
 use super::job::{Job, JobArguments};
 use super::outputs::Files;
 use super::progress::Bars;
+use super::sampling_check::{self, CheckOptions};
 use super::source::{Loaded, ms_since};
 use super::stats::{self, Memory, Stats, Times, VolumeStats};
 use super::terminal::{message, note};
@@ -28,8 +30,13 @@ use super::tolerance::choose;
   angioray render head.nrrd -o head.png
   angioray render head.nrrd -o head.png --mode mip --view left --zoom 1.5
   angioray render cta.nii.gz -o cta.png --mode dvr --tf cta --shading phong --carm 'LAO 30 CRA 20'
+  angioray render head.nrrd -o lit.png --light camera:-1,1,1@ivory --light point:40,-90,60@0.5
+  angioray render head.nrrd -o fog.png --mode dvr --shading phong --shade-from 5%
+  angioray render head.nrrd -o soft.png --ao rays=16,distance=5
+  angioray render head.nrrd -o near.png --dof focus=percentile:20,aperture=2 --dof-method lens:16
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --aa 4:adaptive
+  angioray render head.nrrd -o head.png --mode dvr --step 2 --jitter interleaved:4 --check-sampling
   angioray render head.nrrd -o head.png --mode mip --sparse 4 --refill flood
   angioray render head.nrrd -o head.png --mode mip --screen-error 0.01
   angioray render head.nrrd -o head.png --mode mip --max-error rmse:0.002
@@ -38,15 +45,20 @@ use super::tolerance::choose;
 pub struct RenderArguments {
     #[command(flatten)]
     job: JobArguments,
+
+    #[command(flatten)]
+    check: CheckOptions,
 }
 
 impl RenderArguments {
     pub fn run(self) -> Result<()> {
         let file = self.job.scene_file()?;
+        let check = self.check.over(file.group()?);
         let mut job = self.job.over(&file)?;
         let files = job.output.clone().files(job.options.mode())?;
         files.check(&job.inputs)?;
         let backend = Backend::open(&job.device)?;
+        let check_sampling = check.wanted(&backend, job.bound)?;
         let bars = Bars::new();
         let mut loaded = job.source.load(backend.device_info(), &bars)?;
         job.options = loaded.measured(job.options);
@@ -57,6 +69,7 @@ impl RenderArguments {
             files: &files,
             backend: &backend,
             loaded: &loaded,
+            check_sampling,
             bars: &bars,
         })
     }
@@ -70,6 +83,8 @@ pub struct Drawing<'a> {
     pub files: &'a Files,
     pub backend: &'a Backend,
     pub loaded: &'a Loaded,
+    /// Whether it is checked that its step will do.
+    pub check_sampling: bool,
     pub bars: &'a Bars,
 }
 
@@ -97,6 +112,10 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
     if let Some(choice) = &choice {
         resolved = choice.resolved.clone();
     }
+    let check = match drawing.check_sampling {
+        true => Some(sampling_check::check(&mut caster, &resolved.scene, bars)?),
+        false => None,
+    };
     let mut rendered = caster.render(&resolved.scene, wanted, bars)?;
 
     if let Some(figures) = &rendered.gradients {
@@ -128,7 +147,23 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
     if let Some(check) = &rendered.sample_check {
         message(check_line(check));
     }
-    write_stats(&drawing, rendered, times_ms, &resolved, choice.as_ref())
+    if let Some(focus_mm) = rendered.focus_mm {
+        message(format!(
+            "focus: {} mm from the eye along the view axis",
+            concise(focus_mm)
+        ));
+    }
+    if let Some(check) = &check {
+        message(sampling_check::line(check, resolved.scene.picture.mode()));
+    }
+    let found = Found { choice, check };
+    write_stats(&drawing, rendered, times_ms, &resolved, &found)
+}
+
+/// What was found about how the picture's rays are followed.
+struct Found {
+    choice: Option<Choice>,
+    check: Option<SamplingCheck>,
 }
 
 /// Writes the picture, with what it was made of where its format carries that.
@@ -188,12 +223,13 @@ fn write_stats(
     rendered: Rendered,
     times_ms: Times,
     resolved: &Resolved,
-    choice: Option<&Choice>,
+    found: &Found,
 ) -> Result<()> {
     let (files, job, loaded) = (drawing.files, drawing.job, drawing.loaded);
     let Some(path) = &files.stats else {
         return Ok(());
     };
+    let choice = found.choice.as_ref();
     let chosen = choice.map_or(Cost::default(), |choice| choice.cost);
     let rays = rendered.rays();
     let stats = Stats {
@@ -208,6 +244,8 @@ fn write_stats(
         counts: Counts::of(&rendered.frame, &resolved.scene.picture, rays),
         rays_per_round: rendered.rays_per_round,
         sample_check: rendered.sample_check,
+        focus_mm: rendered.focus_mm,
+        sampling_check: found.check,
         memory: Memory::now(
             rendered.device_bytes,
             rendered.gradients.map_or(0, |figures| figures.bytes),

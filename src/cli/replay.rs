@@ -118,6 +118,7 @@ impl ReplayArguments {
             files: &files,
             backend: &backend,
             loaded: &loaded,
+            check_sampling: false,
             bars: &bars,
         })
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
-use crate::lab::measure::{Counts, host_peak_bytes};
+use crate::lab::measure::{Counts, SamplingCheck, host_peak_bytes};
 use crate::lab::tolerance::ToleranceStats;
 use crate::options::SceneOptions;
 use crate::output::write_atomically;
@@ -35,6 +35,12 @@ pub struct Stats<'a> {
     /// How much adaptive anti-aliasing may differ from the whole of it; of a single picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_check: Option<SampleCheck>,
+    /// How far away the focal plane of the lens is along the view axis, mm; of a single picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focus_mm: Option<f64>,
+    /// Whether the step will do, where that was checked; of a single picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sampling_check: Option<SamplingCheck>,
     pub memory: Memory,
     /// Where an error bound decided how rays are followed.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -100,6 +100,11 @@ layers! {
     Certificate, CERTIFICATE: u32 = Some(FillValue::Count(Certificate::Undecided as u32)), "certificate", ["certificate.V"];
     /// The share of a pixel's rays that met something.
     Coverage, COVERAGE: f32 = Some(FillValue::Scalar(0.0)), "coverage", ["coverage.V"];
+    /// The share of the light from everywhere that a surface keeps from the hit; 0 where nothing is hit or none is asked for.
+    Occlusion, OCCLUSION: f32 = Some(FillValue::Scalar(0.0)), "occlusion", ["occlusion.V"];
+    /// The diameter of the circle of confusion, pixels, above 0 behind the focal plane; where nothing is seen that of what is
+    /// infinitely far away. 0 without a lens.
+    Coc, COC: f32 = Some(FillValue::Scalar(0.0)), "coc", ["coc.V"];
 }
 
 impl Layer {

@@ -5,7 +5,7 @@ use super::group::Keys;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
-use crate::scene::{Mode, SamplingMethod};
+use crate::scene::{Light, Mode, SamplingMethod};
 
 /// The order in which needs are checked: that an option belongs to another mode says more than that
 /// something else is missing.
@@ -26,6 +26,7 @@ impl SceneOptions {
         self.camera.check()?;
         self.check_rules()?;
         self.clip.check()?;
+        Light::check_count(self.picture.light.as_deref().unwrap_or_default())?;
         if let (Some(method), Some(quad)) = (self.sampling.sampling, self.picture.quad)
             && quad.sampling() != method
         {
@@ -81,6 +82,7 @@ impl SceneOptions {
             Need::Eye => self.camera.eye.is_some(),
             Need::Homogeneity => self.picture.homogeneity.is_some(),
             Need::Sparse => self.sampling.is_sparse(),
+            Need::Lens => self.effects.dof.is_some(),
             // Of options beside the scene.
             Need::OpenCl
             | Need::Layered
@@ -125,6 +127,9 @@ impl SceneOptions {
             )),
             Need::Sparse => Error::usage(format!(
                 "'{option}' has no effect without 'sparse': every pixel is cast"
+            )),
+            Need::Lens => Error::usage(format!(
+                "'{option}' has no effect without 'dof': a pinhole has no lens"
             )),
             _ => Error::usage(format!(
                 "'{option}' has no effect in mode '{mode}' without shading"

@@ -1,7 +1,8 @@
 //! Which options of a scene contradict each other, and which of a scene file's give way to a flag beside
 //! those that lose what they need ([`super::rules`]).
 
-use super::enum_names::Switch;
+use super::enum_names::{GradientMethod, Switch};
+use super::shade_from::ShadeFrom;
 use super::{SceneOptions, Shading};
 use crate::scene::{
     Filter, Mode, QuadratureMethod, Reconstruction, Refill, SamplingMethod, Storage, View,
@@ -71,6 +72,11 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "choose sampling exact, or leave screen-error out",
     },
     Contradiction {
+        is_in: |all| all.sampling.is_jittered() && all.method() == SamplingMethod::Exact,
+        sentence: "'jitter' cannot be combined with exact sampling or quad adaptive, which take no samples at steps and need none",
+        hint: "choose sampling fixed, or another quad, or leave jitter out",
+    },
+    Contradiction {
         is_in: |all| marches_nearest(all) && is_exact(all),
         sentence: "'recon' adaptive cannot be combined with exact sampling, which solves the field and takes no samples",
         hint: "choose sampling fixed",
@@ -86,6 +92,11 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "leave one of the two out",
     },
     Contradiction {
+        is_in: |all| all.effects.ao.is_some() && all.sampling.filter == Some(Filter::Nearest),
+        sentence: "'ao' cannot be combined with 'filter' nearest, whose surface is the voxels' faces",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -95,7 +106,22 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         sentence: "'homogeneity' cannot be combined with quad 'adaptive', which keeps a bound of its own",
         hint: "choose another quad, or leave homogeneity out",
     },
+    Contradiction {
+        is_in: |all| weighs_gradients(all) && is_precomputed(all),
+        sentence: "'shade-from' cannot be combined with precomputed gradients, of which only the direction is stored",
+        hint: "choose another gradient, or leave shade-from out",
+    },
 ];
+
+/// Whether a medium's shading depends on the gradient's magnitude.
+fn weighs_gradients(options: &SceneOptions) -> bool {
+    let gradient = options.picture.shade_from;
+    gradient.is_some_and(|gradient| gradient != ShadeFrom::default())
+}
+
+fn is_precomputed(options: &SceneOptions) -> bool {
+    options.picture.gradient == Some(GradientMethod::Precomputed)
+}
 
 /// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
@@ -126,7 +152,7 @@ pub(super) const REPLACED: &[Replaced] = &[
             let is_dvr = |options: &SceneOptions| options.mode() == Mode::Dvr;
             flags.picture.mode.is_some() && is_dvr(flags) != is_dvr(file)
         },
-        options: &["sampling", "step", "probe", "recon", "refine"],
+        options: &["sampling", "step", "jitter", "probe", "recon", "refine"],
     },
     // Light of which the file's own mode made no use is not another mode's.
     Replaced {
@@ -138,7 +164,17 @@ pub(super) const REPLACED: &[Replaced] = &[
             let was_lit = file.mode().is_lit() && file.picture.is_shaded();
             is_other_mode(flags, file) && flags.picture.shading.is_none() && !was_lit
         },
-        options: &["ambient", "diffuse", "specular", "shininess", "light"],
+        options: &[
+            "ambient",
+            "ambient-color",
+            "diffuse",
+            "diffuse-color",
+            "specular",
+            "specular-color",
+            "shininess",
+            "light",
+            "shade-from",
+        ],
     },
     // What implies steps wins over a sampling.
     Replaced {
@@ -160,12 +196,22 @@ pub(super) const REPLACED: &[Replaced] = &[
         by: |flags, _| is_exact(flags),
         options: &[
             "step",
+            "jitter",
             "probe",
             "recon",
             "refine",
             "homogeneity",
             "homogeneity-rule",
         ],
+    },
+    // The adaptive quadrature takes no samples that could be shifted.
+    Replaced {
+        by: |flags, _| is_adaptive(flags),
+        options: &["jitter"],
+    },
+    Replaced {
+        by: |flags, file| flags.sampling.is_jittered() && is_adaptive(file),
+        options: &["quad"],
     },
     // Nearest voxels on the way to a hit are neither probed between nor all there is.
     Replaced {
@@ -184,6 +230,16 @@ pub(super) const REPLACED: &[Replaced] = &[
         options: &["recon"],
     },
     Replaced {
+        by: |flags, _| flags.sampling.filter == Some(Filter::Nearest),
+        options: &["ao"],
+    },
+    Replaced {
+        by: |flags, file| {
+            flags.effects.ao.is_some() && file.sampling.filter == Some(Filter::Nearest)
+        },
+        options: &["filter"],
+    },
+    Replaced {
         by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),
         options: &["voxels"],
     },
@@ -198,6 +254,15 @@ pub(super) const REPLACED: &[Replaced] = &[
     Replaced {
         by: |flags, _| flags.picture.homogeneity.is_some(),
         options: &["shading"],
+    },
+    // Of precomputed gradients there is no magnitude.
+    Replaced {
+        by: |flags, file| weighs_gradients(flags) && is_precomputed(file),
+        options: &["gradient", "gradient-scale", "gradient-smooth"],
+    },
+    Replaced {
+        by: |flags, _| is_precomputed(flags),
+        options: &["shade-from"],
     },
     Replaced {
         by: |flags, file| flags.picture.homogeneity.is_some() && is_adaptive(file),
@@ -228,7 +293,7 @@ pub(super) const REPLACED: &[Replaced] = &[
             let mode = flags.clone().or(file.clone()).mode();
             flags.sampling.screen_error.is_some() && mode != Mode::Dvr
         },
-        options: &["sampling", "step", "probe", "refine", "recon"],
+        options: &["sampling", "step", "jitter", "probe", "refine", "recon"],
     },
     Replaced {
         by: |flags, _| {

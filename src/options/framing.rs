@@ -18,7 +18,7 @@ impl SceneOptions {
     /// As those of [`SceneOptions::resolve`] that the picture has.
     pub fn shown(&self, subject: &Subject) -> Result<(Picture, Filter)> {
         let picture = self.picture.clone();
-        let picture = picture.resolve(self.quadrature(), subject)?.picture;
-        Ok((picture, self.sampling.filter.unwrap_or_default()))
+        let resolved = picture.resolve(self.quadrature(), self.effects.phong(), subject)?;
+        Ok((resolved.picture, self.sampling.filter.unwrap_or_default()))
     }
 }

@@ -64,6 +64,7 @@ fn label(rule: &Rule) -> Option<String> {
         Need::Eye => Some("with --eye".to_owned()),
         Need::Homogeneity => Some("with --homogeneity".to_owned()),
         Need::Sparse => Some("with --sparse".to_owned()),
+        Need::Lens => Some("with --dof".to_owned()),
         _ => None,
     });
     let steps = rule
@@ -113,7 +114,11 @@ mod tests {
                 "projections: values [default: the value range, without a few far-away values and padding]",
             ),
             ("gradient", "How", "iso, shaded dvr: how [default: central]"),
-            ("ambient", "Light", "shading: light [default: 0.1]"),
+            (
+                "ambient",
+                "Light",
+                "shading: light [default: 0.1; 0.5 with --ao]",
+            ),
             (
                 "shading",
                 "none",

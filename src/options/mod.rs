@@ -16,11 +16,13 @@ mod carm;
 mod check;
 mod clip;
 mod conflicts;
+mod effects;
 mod enum_names;
 mod error_bound;
 mod framing;
 pub(crate) mod group;
 pub(crate) mod help;
+mod lights;
 mod max_error;
 mod notes;
 mod of_mode;
@@ -33,6 +35,7 @@ pub(crate) mod rules;
 mod sampling;
 mod scene_file;
 mod setting;
+mod shade_from;
 mod step_cost;
 pub(crate) mod text_form;
 mod threshold;
@@ -45,6 +48,7 @@ mod volume;
 pub use camera::CameraOptions;
 pub use carm::CArm;
 pub use clip::ClipOptions;
+pub use effects::EffectOptions;
 pub use enum_names::{Fit, GradientMethod, NonFiniteRule, Shading, Switch};
 pub use error_bound::{ErrorBound, ErrorMetric};
 pub use max_error::ToleranceOptions;
@@ -54,6 +58,7 @@ pub use resolve::Resolved;
 pub use sampling::SamplingOptions;
 pub use scene_file::{Part, SceneFile, flag_names};
 pub use setting::Setting;
+pub use shade_from::ShadeFrom;
 pub use threshold::{Threshold, WindowEnds};
 pub use tone::ToneOptions;
 pub use transfer_choice::TransferChoice;
@@ -88,6 +93,10 @@ pub struct SceneOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub sampling: SamplingOptions,
+    /// What light and lens do beyond reflection at a point.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub effects: EffectOptions,
     /// How the picture is displayed.
     #[command(flatten)]
     #[serde(flatten)]
@@ -108,6 +117,7 @@ impl SceneOptions {
             camera: self.camera.over(base.camera),
             clip: self.clip.over(base.clip),
             sampling: self.sampling.over(base.sampling),
+            effects: self.effects.over(base.effects),
             tone: self.tone.over(base.tone),
         }
     }
@@ -121,6 +131,7 @@ impl Keys for SceneOptions {
             self.picture.given(),
             self.camera.given(),
             self.clip.given(),
+            self.effects.given(),
             self.tone.given(),
         ]
         .concat()
@@ -133,6 +144,7 @@ impl Keys for SceneOptions {
             camera: self.camera.retaining(&passes),
             clip: self.clip.retaining(&passes),
             sampling: self.sampling.retaining(&passes),
+            effects: self.effects.retaining(&passes),
             tone: self.tone.retaining(&passes),
         }
     }

@@ -40,7 +40,7 @@ impl SceneOptions {
             _ => "sampling = exact".to_owned(),
         };
         Some(format!(
-            "{exact} takes no steps: step, refine, probe and recon have no effect"
+            "{exact} takes no steps: step, jitter, refine, probe and recon have no effect"
         ))
     }
 

@@ -2,7 +2,9 @@
 
 use super::enum_names::{GradientMethod, Shading, Switch};
 use super::group::group;
+use super::lights;
 use super::quantities::{GradientScale, SigmaVoxels};
+use super::shade_from::ShadeFrom;
 use super::text_form::text_form;
 use super::threshold::{Threshold, WindowEnds};
 use super::transfer_choice::TransferChoice;
@@ -14,7 +16,6 @@ use crate::scene::{
 text_form!(
     HomogeneityLimit,
     HomogeneityRule,
-    Light,
     Mode,
     Quadrature,
     Refine,
@@ -94,21 +95,44 @@ group! {
         #[arg(long, value_name = "A", allow_hyphen_values = true)]
         ambient: Reflectance,
 
-        /// Light of the source reflected in all directions
+        /// The tint of that light, a colour as that of --color
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
+        ambient_color: SrgbColor,
+
+        /// Light of the lights reflected in all directions; of either side, for the normal is turned to
+        /// the viewer first
         #[arg(long, value_name = "D", allow_hyphen_values = true)]
         diffuse: Reflectance,
 
-        /// Light of the source mirrored
+        /// The tint of that light, a colour as that of --color
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
+        diffuse_color: SrgbColor,
+
+        /// Light of the lights mirrored
         #[arg(long, value_name = "S", allow_hyphen_values = true)]
         specular: Reflectance,
+
+        /// The tint of that light, a colour as that of --color
+        #[arg(long, value_name = "COLOR", allow_hyphen_values = true)]
+        specular_color: SrgbColor,
 
         /// Sharpness of the mirrored light
         #[arg(long, value_name = "N", allow_hyphen_values = true)]
         shininess: Shininess,
 
-        /// headlight, or the world direction toward a distant light
-        #[arg(long, value_name = "headlight|X,Y,Z", allow_hyphen_values = true)]
-        light: Light,
+        /// A light, up to 4 times: headlight; fixed to the patient, the direction X,Y,Z toward it in world
+        /// space or point:X,Y,Z, a place in mm, whose light gets no less with the distance; or
+        /// camera:X,Y,Z, the direction toward it right, up and toward the viewer. Behind it there may be a
+        /// colour as that of --color and an intensity, such as headlight@ivory@0.8
+        #[arg(long, value_name = "PLACE[@COLOR][@INTENSITY]", allow_hyphen_values = true)]
+        #[serde(deserialize_with = "lights::deserialize", serialize_with = "lights::serialize")]
+        light: Vec<Light>,
+
+        /// The gradient from which on the medium is shaded fully, in values per mm, or as a share of the
+        /// value range per voxel such as 5%; where it is smaller, as in noise, the shaded colour counts as
+        /// much less and the medium's own the more
+        #[arg(long, value_name = "G|N%", allow_hyphen_values = true)]
+        shade_from: ShadeFrom,
 
         /// How normals are found: central, forward or fourth-order differences of the field, or
         /// precomputed: central ones at every N-th voxel, interpolated between

@@ -67,11 +67,21 @@ mod tests {
             ("aa = 4", "sparse = 4"),
             ("aa = 4", "screen-error = 0.1"),
             ("sampling = 'fixed'", "screen-error = 0.1"),
+            ("jitter = 'hash:1'", "sampling = 'exact'"),
+            (
+                "mode = 'dvr'\njitter = 'hash:1'",
+                "mode = 'dvr'\nquad = 'adaptive'",
+            ),
             ("recon = 'adaptive'", "sampling = 'exact'"),
             ("recon = 'adaptive'", "filter = 'nearest'"),
             ("recon = 'adaptive'", "probe = 'on'"),
+            ("ao = 'distance=5'", "filter = 'nearest'"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
+            (
+                "mode = 'dvr'\nshading = 'phong'\nshade-from = 3",
+                "mode = 'dvr'\nshading = 'phong'\ngradient = 'precomputed'",
+            ),
         ];
         let mut met = vec![0; CONTRADICTIONS.len()];
         for (one, other) in pairs {

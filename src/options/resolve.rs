@@ -31,6 +31,17 @@ impl Resolved {
         seen.options.camera.up = Some(Triple(camera.up_given()));
         seen
     }
+
+    /// Returns the scene as a film has it so many frames later: its samples shifted otherwise.
+    #[must_use]
+    pub fn frames_later(&self, frames: u32) -> Self {
+        let mut later = self.clone();
+        let jitter = &mut later.scene.sampling.jitter;
+        *jitter = jitter.at_frame(frames);
+        let jitter = &mut later.options.sampling.jitter;
+        *jitter = jitter.map(|jitter| jitter.at_frame(frames));
+        later
+    }
 }
 
 impl SceneOptions {
@@ -61,15 +72,20 @@ impl SceneOptions {
         };
         let ResolvedPicture {
             picture,
-            light,
+            lights,
             gradient,
             options: of_picture,
-        } = given.picture.resolve(self.quadrature(), subject)?;
+        } = (given.picture).resolve(self.quadrature(), given.effects.phong(), subject)?;
         let (size, camera, of_camera) = given.camera.resolve(subject)?;
         let (clip_planes, of_clip) = given.clip.resolve()?;
-        let (sampling, mut of_sampling) = given.sampling.resolve(method, picture.mode());
+        let (mut sampling, mut of_sampling) = given.sampling.resolve(method, picture.mode());
         let sparse = of_sampling.resolve_sparse(picture.mode())?;
         let (tone, of_tone) = given.tone.resolve();
+        let effects = given.effects.resolve();
+        if let Some(dof) = effects.dof {
+            dof.check(camera.lens(), size)?;
+        }
+        sampling.dof = effects.dof_method.unwrap_or_default();
         let scene = Scene {
             size,
             camera,
@@ -78,7 +94,9 @@ impl SceneOptions {
             sampling,
             anti_aliasing: of_sampling.aa.unwrap_or_default(),
             sparse,
-            light,
+            lights,
+            ambient_occlusion: effects.ao,
+            depth_of_field: effects.dof,
             gradient,
             tone,
         };
@@ -88,6 +106,7 @@ impl SceneOptions {
             camera: of_camera,
             clip: of_clip,
             sampling: of_sampling,
+            effects,
             tone: of_tone,
         };
         if method == SamplingMethod::Exact {
@@ -201,9 +220,11 @@ mod tests {
             match need {
                 Need::Modes(modes, _) => text.push_str(&format!("mode = '{}'\n", modes[0])),
                 Need::Steps => text.push_str("sampling = 'fixed'\n"),
+                Need::Shading => text.push_str("shading = 'phong'\n"),
                 Need::Precomputed(_) => text.push_str("gradient = 'precomputed'\n"),
                 Need::Eye => text.push_str("eye = [9, -40, 3]\n"),
                 Need::Homogeneity => text.push_str("homogeneity = 0.1\n"),
+                Need::Lens => text.push_str("dof = 'focus=auto,aperture=1'\n"),
                 _ => {}
             }
         }

@@ -10,13 +10,15 @@ use std::fmt::Display;
 
 use super::enum_names::{Fit, GradientMethod, NonFiniteRule, Shading, Switch};
 use super::quantities::{AngleDeg, GradientScale, SigmaMm, SigmaVoxels, Zoom};
+use super::shade_from::ShadeFrom;
 use super::step_cost::{MANY_SAMPLES, UNLIKE_SPACINGS};
 use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
-    AntiAliasing, Brightness, Contrast, Filter, FovDeg, Gamma, HomogeneityRule, Light, Mode,
-    Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling, SamplingMethod,
-    Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile, View,
+    AntiAliasing, Brightness, Contrast, DofMethod, Filter, FovDeg, Gamma, HomogeneityRule, Jitter,
+    Light, Mode, Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling,
+    SamplingMethod, Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile,
+    View,
 };
 
 /// The options among which a name is unique.
@@ -34,8 +36,8 @@ pub(crate) enum Group {
 pub(crate) enum Decides {
     /// The volume, the picture of it and the camera, or something beside the scene.
     What,
-    /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), or changes
-    /// what the reference is (filter, gradient).
+    /// How rays are followed. An error bound leaves it alone: it changes no picture (skipping), changes
+    /// what the reference is (filter, gradient), or goes with whichever steps are chosen (jitter).
     How,
     /// How rays are followed; an error bound decides it.
     HowWithinBound,
@@ -65,6 +67,8 @@ pub(crate) enum Need {
     Homogeneity,
     /// Sparse casting.
     Sparse,
+    /// Depth of field.
+    Lens,
     /// An OpenCL device: the reference has none.
     OpenCl,
     /// A picture file that holds layers.
@@ -108,6 +112,8 @@ const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");
 const NORMALS: Need = Need::Modes(LIT, "a projection has no normals");
+const FOCUSES: Need = Need::Modes(LIT, "a projection has no depth to focus on");
+const OCCLUDES: Need = Need::Modes(ISO, "only a surface is in the way of light from everywhere");
 const AVERAGED: Need = Need::Modes(DVR, "only dvr takes a node for its average");
 const SPARSE: Need = Need::Precomputed("only precomputed gradients are stored at every N-th voxel");
 const SMOOTHED: Need = Need::Precomputed(
@@ -169,6 +175,8 @@ pub(crate) const RULES: &[Rule] = &[
         .default(default_sampling),
     scene("step", HowWithinBound, &[Need::Steps])
         .default(text::<StepVoxels>),
+    scene("jitter", How, &[Need::Steps])
+        .default(text::<Jitter>),
     scene("filter", How, &[])
         .default(text::<Filter>),
     scene("recon", HowWithinBound, &[Need::Modes(ISO, "only a surface has a hit at which to change the filter"), Need::Steps])
@@ -214,15 +222,29 @@ pub(crate) const RULES: &[Rule] = &[
     scene("shading", What, &[LIGHT])
         .default(default_shading),
     scene("ambient", What, &[LIGHT, Need::Shading])
-        .default(|| Reflectance::AMBIENT.to_string()),
+        .default(|| occluded(Reflectance::AMBIENT)),
+    scene("ambient-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("diffuse", What, &[LIGHT, Need::Shading])
-        .default(|| Reflectance::DIFFUSE.to_string()),
+        .default(|| occluded(Reflectance::DIFFUSE)),
+    scene("diffuse-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("specular", What, &[LIGHT, Need::Shading])
         .default(|| Reflectance::SPECULAR.to_string()),
+    scene("specular-color", What, &[LIGHT, Need::Shading])
+        .default(white),
     scene("shininess", What, &[LIGHT, Need::Shading])
         .default(text::<Shininess>),
     scene("light", What, &[LIGHT, Need::Shading])
         .default(text::<Light>),
+    scene("shade-from", What, &[Need::Modes(DVR, "only a medium has points where the field hardly changes"), Need::Shading])
+        .default(|| format!("{}, all of it", text::<ShadeFrom>())),
+    scene("ao", What, &[OCCLUDES, Need::Shading])
+        .default(|| "none".to_owned()),
+    scene("dof", What, &[FOCUSES])
+        .default(|| "none, a pinhole".to_owned()),
+    scene("dof-method", How, &[FOCUSES, Need::Lens])
+        .default(text::<DofMethod>),
     scene("gradient", How, &[NORMALS, Need::Normals])
         .default(text::<GradientMethod>),
     scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE])
@@ -284,6 +306,10 @@ pub(crate) const RULES: &[Rule] = &[
     beside(Group::Bench, "restart", &[Need::ResultsFolder]),
 ];
 
+fn white() -> String {
+    SrgbColor::WHITE.to_string()
+}
+
 fn default_sampling() -> String {
     let (default, steps) = (SamplingMethod::default(), SamplingMethod::Fixed);
     let implying = RULES
@@ -325,6 +351,11 @@ fn default_screen_error() -> String {
         "{} where the refill of iso is certified, else none",
         Sparse::SURFACE_ERROR
     )
+}
+
+/// The default of a reflectance that is another where ambient light is occluded.
+fn occluded(without: Reflectance) -> String {
+    format!("{without}; {} with --ao", Reflectance::OCCLUDED)
 }
 
 fn default_shading() -> String {

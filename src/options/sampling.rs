@@ -5,13 +5,14 @@ use super::group::group;
 use super::text_form::text_form;
 use crate::error::Result;
 use crate::scene::{
-    AntiAliasing, Filter, Mode, Reconstruction, Refill, Sampling, SamplingMethod, ScreenError,
-    Sparse, SparseGrid, StepVoxels, Storage, Traverse,
+    AntiAliasing, Filter, Jitter, Mode, Reconstruction, Refill, Sampling, SamplingMethod,
+    ScreenError, Sparse, SparseGrid, StepVoxels, Storage, Traverse,
 };
 
 text_form!(
     AntiAliasing,
     Filter,
+    Jitter,
     Reconstruction,
     Refill,
     SamplingMethod,
@@ -35,6 +36,13 @@ group! {
         /// Distance of samples along a ray, in voxels of the smallest spacing
         #[arg(long, value_name = "VOXELS", allow_hyphen_values = true)]
         step: StepVoxels,
+
+        /// Shift each ray's samples by a share of a step that is its own, against the bands that coarse steps
+        /// leave: interleaved:N, one of N x N shares that repeat every N x N pixels, N from 2 to 16; hash:SEED,
+        /// noise of a whole number; shift:XI, the same share XI for all, from 0 to below 1; or none. In a film every
+        /// frame has other shares: :FRAME behind N or SEED is the number of the first
+        #[arg(long, value_name = "KIND[:N]", allow_hyphen_values = true)]
+        jitter: Jitter,
 
         /// The field between voxel centres: nearest or linear
         #[arg(long, value_name = "nearest|linear")]
@@ -104,6 +112,7 @@ impl SamplingOptions {
             SamplingMethod::Fixed => self,
             SamplingMethod::Exact => Self {
                 step: None,
+                jitter: None,
                 probe: None,
                 recon: None,
                 ..self
@@ -115,17 +124,20 @@ impl SamplingOptions {
         let sampling = Sampling {
             method,
             step: given.step.unwrap_or(default.step),
+            jitter: given.jitter.unwrap_or(default.jitter),
             filter: given.filter.unwrap_or(default.filter),
             recon,
             traverse: given.traverse.unwrap_or(default.traverse),
             skip: given.skip.map_or(default.skip, Switch::is_on),
             probe: given.probe.map_or(probe, Switch::is_on),
             voxels: given.voxels.unwrap_or(default.voxels),
+            dof: default.dof, // an effect's option decides it
         };
         let is_fixed = method == SamplingMethod::Fixed;
         let options = Self {
             sampling: Some(method),
             step: is_fixed.then_some(sampling.step),
+            jitter: is_fixed.then_some(sampling.jitter),
             filter: Some(sampling.filter),
             recon: (is_fixed && mode == Mode::Iso).then_some(recon),
             traverse: Some(sampling.traverse),
@@ -161,6 +173,11 @@ impl SamplingOptions {
             return Ok(None);
         }
         Sparse::new(self.sparse, self.refill, self.screen_error, mode).map(Some)
+    }
+
+    /// Whether samples are shifted.
+    pub(super) fn is_jittered(&self) -> bool {
+        self.jitter.is_some_and(Jitter::is_on)
     }
 
     /// Whether pixels may be filled instead of being cast.

@@ -8,8 +8,8 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 
 use super::{
-    CameraOptions, ClipOptions, FilePath, PictureOptions, SamplingOptions, SceneOptions,
-    ToneOptions, TransferChoice, VolumeOptions,
+    CameraOptions, ClipOptions, EffectOptions, FilePath, PictureOptions, SamplingOptions,
+    SceneOptions, ToneOptions, TransferChoice, VolumeOptions,
 };
 use crate::error::{Error, Result};
 use crate::input;
@@ -220,6 +220,7 @@ impl SceneOptions {
             camera: file.group::<CameraOptions>()?,
             clip: file.group::<ClipOptions>()?,
             sampling: file.group::<SamplingOptions>()?,
+            effects: file.group::<EffectOptions>()?,
             tone: file.group::<ToneOptions>()?,
         };
         if let Some(path) = options.picture.tf.as_ref().and_then(TransferChoice::file) {

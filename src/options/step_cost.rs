@@ -26,6 +26,7 @@ impl SceneOptions {
         let sampling = &self.sampling;
         let wants_steps = sampling.sampling.is_some()
             || sampling.step.is_some()
+            || sampling.is_jittered()
             || sampling.probe.is_some()
             || sampling.voxels == Some(Storage::Filtered);
         let picture = &self.picture;

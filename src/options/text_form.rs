@@ -103,7 +103,8 @@ impl<'de> Visitor<'de> for Text {
     }
 }
 
-struct Item(String);
+/// An item of a list, as the flag's text.
+pub(super) struct Item(pub(super) String);
 
 impl<'de> serde::Deserialize<'de> for Item {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {

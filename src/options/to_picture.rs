@@ -2,19 +2,20 @@
 
 use super::enum_names::{GradientMethod, Shading, Switch};
 use super::picture::PictureOptions;
+use super::shade_from::ShadeFrom;
 use super::threshold::{Threshold, WindowEnds};
 use super::transfer_choice::TransferChoice;
 use crate::error::Result;
 use crate::scene::{
     Emission, Gradient, Homogeneity, Light, Mode, Phong, Picture, Precomputed, Projection,
-    Quadrature, Reflection, SrgbColor, TransferFile, Window,
+    Quadrature, Reflection, ShadedFrom, SrgbColor, TransferFile, Window,
 };
 use crate::subject::Subject;
 
 /// The picture options, resolved for a volume.
 pub(super) struct ResolvedPicture {
     pub picture: Picture,
-    pub light: Light,
+    pub lights: Vec<Light>,
     pub gradient: Gradient,
     /// The options that make the same, with every default of the mode in its place, every value physical and
     /// the transfer function written out.
@@ -24,23 +25,25 @@ pub(super) struct ResolvedPicture {
 /// How a picture is lit.
 struct Lighting {
     phong: Option<Phong>,
-    light: Light,
+    lights: Vec<Light>,
     gradient: Gradient,
     /// The mode, and the options that make the same.
     options: PictureOptions,
 }
 
 impl PictureOptions {
-    /// Makes the picture; `quadrature` sums its light where the mode is dvr.
+    /// Makes the picture; `quadrature` sums its light where the mode is dvr, `phong` says how it reflects light where nothing
+    /// else is given.
     ///
     /// # Errors
     /// An order statistic; an empty window; a transfer function that cannot be read.
     pub(super) fn resolve(
         self,
         quadrature: Quadrature,
+        phong: Phong,
         subject: &Subject,
     ) -> Result<ResolvedPicture> {
-        let lighting = self.lighting()?;
+        let lighting = self.lighting(phong)?;
         match self.mode() {
             Mode::Iso => self.surface(lighting, subject),
             Mode::Mip => self.projection(Projection::Maximum, lighting, subject),
@@ -67,7 +70,7 @@ impl PictureOptions {
                 color: color.linear(),
                 phong: lighting.phong,
             },
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 iso: Some(Threshold::Value(iso)),
@@ -91,7 +94,7 @@ impl PictureOptions {
         };
         Ok(ResolvedPicture {
             picture: Picture::Projection { of, window },
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 window: Some(WindowEnds {
@@ -119,6 +122,11 @@ impl PictureOptions {
         };
         let file = file.in_values(subject.robust_range);
         let termination = self.termination.unwrap_or_default();
+        let shaded_from = match self.shade_from {
+            Some(gradient) => gradient.resolve(subject)?,
+            None => ShadedFrom::default(),
+        };
+        let is_shaded = lighting.phong.is_some();
         let homogeneity = self.homogeneity.map(|limit| Homogeneity {
             rule: self.homogeneity_rule.unwrap_or_default(),
             limit,
@@ -127,11 +135,12 @@ impl PictureOptions {
             picture: Picture::Emission(Emission {
                 transfer: file.clone().transfer_function(subject.robust_range)?,
                 phong: lighting.phong,
+                shaded_from,
                 quadrature,
                 termination,
                 homogeneity,
             }),
-            light: lighting.light,
+            lights: lighting.lights,
             gradient: lighting.gradient,
             options: Self {
                 tf: Some(TransferChoice::Written(file)),
@@ -139,16 +148,17 @@ impl PictureOptions {
                 termination: Some(termination),
                 homogeneity: homogeneity.map(|homogeneity| homogeneity.limit),
                 homogeneity_rule: homogeneity.map(|homogeneity| homogeneity.rule),
+                shade_from: is_shaded.then_some(ShadeFrom::PerMm(shaded_from)),
                 ..lighting.options
             },
         })
     }
 
-    fn lighting(&self) -> Result<Lighting> {
+    fn lighting(&self, default: Phong) -> Result<Lighting> {
         let (gradient, of_gradient) = self.resolved_gradient()?;
         let unlit = Lighting {
             phong: None,
-            light: Light::default(),
+            lights: vec![Light::default()],
             gradient,
             options: Self {
                 mode: Some(self.mode()),
@@ -161,26 +171,37 @@ impl PictureOptions {
             Shading::Phong => Reflection::Phong,
             Shading::BlinnPhong => Reflection::BlinnPhong,
         };
-        let default = Phong::default();
+        let tint = |color: Option<SrgbColor>| color.unwrap_or(SrgbColor::WHITE);
+        let ambient_color = tint(self.ambient_color);
+        let diffuse_color = tint(self.diffuse_color);
+        let specular_color = tint(self.specular_color);
         let phong = Phong {
             reflection,
             ambient: self.ambient.unwrap_or(default.ambient),
+            ambient_color: ambient_color.linear(),
             diffuse: self.diffuse.unwrap_or(default.diffuse),
+            diffuse_color: diffuse_color.linear(),
             specular: self.specular.unwrap_or(default.specular),
+            specular_color: specular_color.linear(),
             shininess: self.shininess.unwrap_or(default.shininess),
         };
-        let light = self.light.unwrap_or_default();
+        let lights = self.light.clone();
+        let lights = lights.unwrap_or_else(|| vec![Light::default()]);
+        Light::check_count(&lights)?;
         Ok(Lighting {
             phong: Some(phong),
-            light,
             options: Self {
                 ambient: Some(phong.ambient),
+                ambient_color: Some(ambient_color),
                 diffuse: Some(phong.diffuse),
+                diffuse_color: Some(diffuse_color),
                 specular: Some(phong.specular),
+                specular_color: Some(specular_color),
                 shininess: Some(phong.shininess),
-                light: Some(light),
+                light: Some(lights.clone()),
                 ..unlit.options
             },
+            lights,
             ..unlit
         })
     }

@@ -1,21 +1,22 @@
 //! Emission and absorption along a ray, integrated adaptively between the points where the
 //! integrand is not smooth: cell faces, knots of the transfer function, and, when shaded, where
-//! the surface turns away from the viewer or the light.
+//! the surface turns away from the viewer or a light, and where the gradient is that from which it is shaded fully.
 
 use glam::{DMat3, DVec3};
 use smallvec::{SmallVec, smallvec};
 
 use crate::extent::Range;
-use crate::scene::Gradient;
+use crate::scene::{Gradient, LightFrom};
 use crate::volume::Voxel;
 
+use super::bernstein::{Ordinates, each_zero, product, sum};
 use super::cells::{Segment, Walk};
 use super::collocation::{GAUSS, NODES};
 use super::cubic::Cubic;
 use super::field::{Field, bounds};
 use super::interval::Interval;
 use super::medium::{Medium, Ramp};
-use super::shade::{Lighting, normal_from_gradient};
+use super::shade::{Lighting, LitPoint, normal_from_gradient};
 
 /// The sum of the error estimates of a ray, per channel, but for [`FLOOR`] a piece. An estimate is
 /// that of the coarser of two results, of which the finer one is taken.
@@ -58,11 +59,17 @@ pub struct Means {
     pub normal_world: DVec3,
 }
 
-/// How the medium's points are lit.
+/// How the medium's points along a ray are lit.
 #[derive(Debug, Clone, Copy)]
-pub struct Shading {
-    /// The light and the reflection.
-    pub lighting: Lighting,
+pub struct Shading<'a> {
+    /// The lights and the reflection.
+    pub lighting: &'a Lighting,
+    /// Where the interval begins, world space.
+    pub start_world: DVec3,
+    /// The ray's direction, a unit vector in world space.
+    pub dir_world: DVec3,
+    /// The gradient, per mm, from which points are shaded fully; 0: all are.
+    pub shaded_from: f64,
     /// How gradients are computed.
     pub gradient: Gradient,
     /// The inverse transpose of world_from_index's linear part.
@@ -156,8 +163,12 @@ impl WorldGradient {
         Self([rows.x_axis, rows.y_axis, rows.z_axis].map(component))
     }
 
+    fn at(&self, s: f64) -> DVec3 {
+        DVec3::from_array(self.0.map(|c| c.at(s)))
+    }
+
     fn normal(&self, s: f64, toward_eye: DVec3) -> DVec3 {
-        normal_from_gradient(DVec3::from_array(self.0.map(|c| c.at(s))), toward_eye)
+        normal_from_gradient(self.at(s), toward_eye)
     }
 
     /// Whether the normal surely turns little on a piece: a swing where the gradient almost
@@ -165,56 +176,129 @@ impl WorldGradient {
     fn is_steady(&self, from: f64, to: f64) -> bool {
         let [x, y, z] = self.0.map(|c| c.hull(from, to));
         let points: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
-        let middle: DVec3 = points.iter().sum();
-        points
-            .iter()
-            .all(|p| p.dot(middle) >= STEADY * p.length() * middle.length())
+        is_narrow(&points)
     }
+}
+
+/// Whether vectors, and so all in their hull, have about one direction.
+fn is_narrow(vectors: &[DVec3]) -> bool {
+    let middle: DVec3 = vectors.iter().sum();
+    vectors
+        .iter()
+        .all(|v| v.dot(middle) >= STEADY * v.length() * middle.length())
 }
 
 /// The light on a segment.
-struct Lit {
-    lighting: Lighting,
+struct Lit<'a> {
+    shading: Shading<'a>,
     gradient: WorldGradient,
+    /// Where the segment begins and ends, world space.
+    ends_world: [DVec3; 2],
 }
 
-impl Lit {
-    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading) -> Self {
+impl<'a> Lit<'a> {
+    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading<'a>) -> Self {
         let to_world = shading.gradient_world_from_index;
+        let place = |mm: f64| shading.start_world + shading.dir_world * mm;
         Self {
-            lighting: shading.lighting,
+            shading: *shading,
             gradient: WorldGradient::new(field, segment, shading.gradient, to_world),
+            ends_world: [place(segment.from_mm), place(segment.to_mm)],
         }
+    }
+
+    fn at_world(&self, s: f64) -> DVec3 {
+        self.ends_world[0].lerp(self.ends_world[1], s)
+    }
+
+    /// The light of a point: the shaded colour, mixed with the unshaded where the gradient is small.
+    fn reflect(&self, s: f64, color: [f64; 3]) -> [f64; 3] {
+        let to_viewer = -self.shading.dir_world;
+        let point = LitPoint {
+            at_world: self.at_world(s),
+            to_viewer,
+            normal: self.gradient.normal(s, to_viewer),
+        };
+        let shaded = self.shading.lighting.reflect(color, point, 1.0);
+        let share = self.shaded_share(s);
+        std::array::from_fn(|c| shaded[c] * share + color[c] * (1.0 - share))
+    }
+
+    /// min(1, |∇Φ| / G); 1 where G is 0.
+    fn shaded_share(&self, s: f64) -> f64 {
+        match self.shading.shaded_from {
+            0.0 => 1.0,
+            from => (self.gradient.at(s) / from).length().min(1.0),
+        }
+    }
+
+    /// ∇Φ·l along the segment, as Bernstein ordinates: of a light at a point l is linear, but for its length.
+    fn facing(&self, from: LightFrom) -> Ordinates {
+        let along = |toward: DVec3| Cubic::combine(&self.gradient.0, toward.to_array()).0;
+        match from {
+            LightFrom::Eye => along(-self.shading.dir_world).as_slice().into(),
+            LightFrom::Direction(toward) => along(toward).as_slice().into(),
+            LightFrom::Point(light_world) => {
+                let [near, far] = self.ends_world.map(|end| (light_world - end).to_array());
+                let axis = |a: usize| product(&self.gradient.0[a].0, &[near[a], far[a]]);
+                sum(&sum(&axis(0), &axis(1)), &axis(2))
+            }
+        }
+    }
+
+    /// (|∇Φ| / G)² − 1 along the segment, as Bernstein ordinates.
+    fn beyond_shaded_from(&self) -> Ordinates {
+        let squares = (self.gradient.0).map(|component| {
+            let scaled = component.0.map(|value| value / self.shading.shaded_from);
+            product(&scaled, &scaled)
+        });
+        let square = sum(&sum(&squares[0], &squares[1]), &squares[2]);
+        square.iter().map(|ordinate| ordinate - 1.0).collect()
     }
 }
 
-/// Colours, under a light where there is one.
-struct Tint {
-    lit: Option<Lit>,
+/// Colours, under lights where there are any.
+struct Tint<'a> {
+    lit: Option<Lit<'a>>,
 }
 
-impl Points<3> for Tint {
+impl Points<3> for Tint<'_> {
     fn at(&self, s: f64, _value: f64, color: [f64; 3]) -> [f64; 3] {
         match &self.lit {
-            Some(lit) => {
-                let normal = lit.gradient.normal(s, lit.lighting.to_viewer);
-                lit.lighting.reflect(color, normal)
-            }
+            Some(lit) => lit.reflect(s, color),
             None => color,
         }
     }
 
     fn push_breaks(&self, breaks: &mut Breaks) {
-        if let Some(lit) = &self.lit {
-            for toward in [lit.lighting.to_viewer, lit.lighting.to_light] {
-                Cubic::combine(&lit.gradient.0, toward.to_array()).push_crossings(0.0, breaks);
+        let Some(lit) = &self.lit else {
+            return;
+        };
+        let lamps = lit.shading.lighting.lamps().iter().map(|lamp| lamp.from);
+        for from in std::iter::once(LightFrom::Eye).chain(lamps) {
+            let facing = lit.facing(from);
+            match <[f64; 4]>::try_from(facing.as_slice()) {
+                Ok(cubic) => Cubic(cubic).push_crossings(0.0, breaks),
+                Err(_) => each_zero(&facing, &mut |s| breaks.push(s)),
             }
+        }
+        if lit.shading.shaded_from > 0.0 {
+            each_zero(&lit.beyond_shaded_from(), &mut |s| breaks.push(s));
         }
     }
 
     fn is_steady(&self, from: f64, to: f64) -> bool {
-        let lit = self.lit.as_ref();
-        lit.is_none_or(|lit| lit.gradient.is_steady(from, to))
+        let Some(lit) = &self.lit else {
+            return true;
+        };
+        let is_steady = |of: LightFrom| match of {
+            LightFrom::Point(light_world) => {
+                is_narrow(&[from, to].map(|s| light_world - lit.at_world(s)))
+            }
+            LightFrom::Eye | LightFrom::Direction(_) => true,
+        };
+        let lamps = lit.shading.lighting.lamps();
+        lit.gradient.is_steady(from, to) && lamps.iter().all(|lamp| is_steady(lamp.from))
     }
 }
 

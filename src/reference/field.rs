@@ -55,6 +55,25 @@ impl<'a, T: Voxel> Field<'a, T> {
         Cubic::along(corners, p, q)
     }
 
+    /// ∇Φ in index space at a point of a box, by the field in that box alone.
+    pub fn slope_in(&self, cell: [usize; 3], p: [f64; 3]) -> [f64; 3] {
+        let v = self.corners(cell);
+        let at: [f64; 3] = std::array::from_fn(|a| (p[a] - cell[a] as f64).clamp(0.0, 1.0));
+        let mix = |low: f64, high: f64, t: f64| low + (high - low) * t;
+        // Of the differences along an axis, the four edges' mean by the other two axes, of which `b` is the lower.
+        let along = |axis: usize| {
+            let [b, c] = [[1, 2], [0, 2], [0, 1]][axis];
+            let edge = |n: usize| v[n + (1 << axis)] - v[n];
+            let low = mix(edge(0), edge(1 << b), at[b]);
+            mix(
+                low,
+                mix(edge(1 << c), edge((1 << b) + (1 << c)), at[b]),
+                at[c],
+            )
+        };
+        [0, 1, 2].map(along)
+    }
+
     /// Φ along a segment moved by whole voxels along an axis, clamped to the domain: past the last
     /// (first) box it slides along the domain's face.
     pub fn shifted(&self, segment: &Segment, axis: usize, by: isize) -> Cubic {

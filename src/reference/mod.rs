@@ -6,6 +6,7 @@
 //! Surfaces and projections are solved from these cubics to machine precision; emission–absorption
 //! is integrated adaptively between the points where its integrand is not smooth.
 
+mod bernstein;
 mod cells;
 mod clip;
 mod collocation;
@@ -15,6 +16,7 @@ mod field;
 mod gradient;
 mod interval;
 mod medium;
+mod occlusion;
 mod projection;
 mod shade;
 mod surface;
@@ -30,11 +32,11 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{
-    CERTIFICATE, COVERAGE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layers, NORMAL, PlaneEntry,
-    STEPS, VALUE, Wanted,
+    CERTIFICATE, COC, COVERAGE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layer, Layers, NORMAL,
+    OCCLUSION, PlaneEntry, STEPS, VALUE, Wanted,
 };
 use crate::progress::Progress;
-use crate::scene::{Picture, Scene};
+use crate::scene::{DepthOfField, LensPoint, Picture, RayCount, Scene};
 use crate::volume::Volume;
 
 /// Rows whose f64 results are held at a time, before they are narrowed to the planes' f32.
@@ -51,7 +53,7 @@ pub fn render(
     wanted: Wanted,
     progress: &dyn Progress,
 ) -> Result<Frame> {
-    let tracer = Tracer::new(volume, scene)?.wanting(wanted);
+    let seer = Seer::new(volume, scene, wanted)?;
     let (size, width) = (scene.size, scene.size.width());
     let mut frame = Frame::blank(size, wanted)?;
     progress.begin("reference", u64::from(size.height()));
@@ -59,7 +61,7 @@ pub fn render(
         let rows = BAND_ROWS.min(size.height() - first);
         let band: Vec<PixelResult> = (first * width..(first + rows) * width)
             .into_par_iter()
-            .map(|pixel| cast_pixel(&tracer, scene, pixel))
+            .map(|pixel| seer.see(pixel))
             .collect();
         for (result, pixel) in band.iter().zip((first * width) as usize..) {
             fill(&mut frame, pixel, result, scene);
@@ -84,14 +86,11 @@ pub fn render_pixels(
 ) -> Result<Frame> {
     /// The number of pixels between two reports of progress.
     const AT_A_TIME: usize = 256;
-    let tracer = Tracer::new(volume, scene)?.wanting(wanted);
+    let seer = Seer::new(volume, scene, wanted)?;
     let mut frame = Frame::blank(ImageSize::row(pixels.len())?, wanted)?;
     progress.begin("reference", pixels.len() as u64);
     for (first, some) in (0..).step_by(AT_A_TIME).zip(pixels.chunks(AT_A_TIME)) {
-        let results: Vec<PixelResult> = some
-            .par_iter()
-            .map(|&pixel| cast_pixel(&tracer, scene, pixel))
-            .collect();
+        let results: Vec<PixelResult> = some.par_iter().map(|&pixel| seer.see(pixel)).collect();
         for (result, pixel) in results.iter().zip(first..) {
             fill(&mut frame, pixel, result, scene);
         }
@@ -109,30 +108,123 @@ struct PixelResult {
     color: [f64; 4],
     /// The share of its rays that meet something.
     coverage: f64,
+    /// The diameter of its circle of confusion, pixels; 0 without a lens.
+    circle_px: f64,
 }
 
-/// Casts the rays of a pixel, the pixels counted row by row: that of its centre, and where there is
-/// anti-aliasing as many as that asks for, whether it is adaptive or not.
-fn cast_pixel(tracer: &Tracer, scene: &Scene, pixel: u32) -> PixelResult {
-    let width = scene.size.width();
-    let (x, y) = (f64::from(pixel % width), f64::from(pixel / width));
-    let cast = |[dx, dy]: [f64; 2]| tracer.cast(scene.camera.ray(scene.size, x + dx, y + dy));
-    let center = cast([0.5, 0.5]);
-    let aa = scene.anti_aliasing;
-    let (mut sum, mut met) = ([0.0; 4], 0);
-    for place in aa.places_px() {
-        let ray = if aa.rays() == 1 { center } else { cast(place) };
+/// The lens of a scene, in focus.
+struct FocusedLens {
+    dof: DepthOfField,
+    focus_mm: f64,
+}
+
+/// What casts the rays of pixels.
+struct Seer<'a> {
+    tracer: Tracer<'a>,
+    scene: &'a Scene,
+    lens: Option<FocusedLens>,
+}
+
+/// Rays of a pixel through the lens.
+const LENS_RAYS: RayCount = RayCount::of(256);
+
+/// The share of a turn by which the lens's points are turned from pixel to pixel: the golden ratio's fractional part.
+const TURN: f64 = 0.618_033_988_749_894_9;
+
+impl<'a> Seer<'a> {
+    /// Prepares a scene; where what is seen decides the focus, by casting all pixels once.
+    ///
+    /// # Errors
+    /// As [`Tracer::new`]; nothing is seen in the pixel that is to be in focus.
+    fn new(volume: &'a Volume, scene: &'a Scene, wanted: Wanted) -> Result<Self> {
+        let dof = scene.depth_of_field;
+        // A lens is focused, and its circles of confusion found, by the depths.
+        let wanted = wanted.with_if(dof.is_some(), Layer::Depth);
+        let mut seer = Self {
+            tracer: Tracer::new(volume, scene)?.wanting(wanted),
+            scene,
+            lens: None,
+        };
+        if let Some(dof) = dof {
+            let pixels = match dof.focus.is_seen() {
+                true => scene.size.pixels() as u32,
+                false => 0,
+            };
+            let axial = |pixel| seer.axial_mm(&seer.cast(pixel, [0.5; 2], None), pixel);
+            let axial_mm: Vec<f64> = (0..pixels).into_par_iter().map(axial).collect();
+            let focus_mm = dof.focus.distance_mm(&axial_mm, scene.size)?;
+            seer.lens = Some(FocusedLens { dof, focus_mm });
+        }
+        Ok(seer)
+    }
+
+    /// Casts the rays of a pixel, the pixels counted row by row: that of its centre; where there is anti-aliasing as many as that
+    /// asks for, whether it is adaptive or not; and where there is a lens 256 through it.
+    fn see(&self, pixel: u32) -> PixelResult {
+        let center = self.cast(pixel, [0.5; 2], None);
+        let aa = self.scene.anti_aliasing;
+        let (color, coverage) = match aa.rays() {
+            1 => mean([center].into_iter()),
+            _ => mean(aa.places_px().map(|place| self.cast(pixel, place, None))),
+        };
+        let mut seen = PixelResult {
+            center,
+            color,
+            coverage,
+            circle_px: 0.0,
+        };
+        if let Some(lens) = &self.lens {
+            let points = lens
+                .dof
+                .lens_points(LENS_RAYS, lens.focus_mm, f64::from(pixel) * TURN);
+            let places = std::iter::repeat_with(|| aa.places_px()).flatten();
+            let rays = points.zip(places);
+            (seen.color, _) = mean(rays.map(|(point, place)| self.cast(pixel, place, Some(point))));
+            let Scene { camera, size, .. } = self.scene;
+            let axial_mm = self.axial_mm(&center, pixel);
+            seen.circle_px = (lens.dof).circle_px(camera, *size, lens.focus_mm, axial_mm);
+            let kept = lens.dof.kept(seen.circle_px);
+            let [r, g, b, a] = seen.color;
+            seen.color = [r * kept, g * kept, b * kept, a];
+        }
+        seen
+    }
+
+    /// Casts the ray through a place in a pixel, from its upper left corner, and a point of the lens or the pinhole.
+    fn cast(&self, pixel: u32, [dx, dy]: [f64; 2], point: Option<LensPoint>) -> RayResult {
+        let Scene { camera, size, .. } = self.scene;
+        let width = size.width();
+        let (x, y) = (f64::from(pixel % width) + dx, f64::from(pixel / width) + dy);
+        self.tracer.cast(match point {
+            Some(point) => camera.ray_through(*size, x, y, point),
+            None => camera.ray(*size, x, y),
+        })
+    }
+
+    /// How far along the view axis what the ray of a pixel's centre met lies, mm; +∞: it met nothing.
+    fn axial_mm(&self, center: &RayResult, pixel: u32) -> f64 {
+        let Scene { camera, size, .. } = self.scene;
+        let width = size.width();
+        let (x, y) = (
+            f64::from(pixel % width) + 0.5,
+            f64::from(pixel / width) + 0.5,
+        );
+        center.depth_mm * camera.ray(*size, x, y).dir_world.dot(camera.forward())
+    }
+}
+
+/// The mean colour of rays, and the share of them that met something.
+fn mean(rays: impl Iterator<Item = RayResult>) -> ([f64; 4], f64) {
+    let (mut sum, mut met, mut count) = ([0.0; 4], 0, 0);
+    for ray in rays {
         for (sum, channel) in sum.iter_mut().zip(ray.color) {
             *sum += channel;
         }
         met += u32::from(ray.kind != Kind::Nothing);
+        count += 1;
     }
-    let rays = f64::from(aa.rays());
-    PixelResult {
-        center,
-        color: sum.map(|channel| channel / rays),
-        coverage: f64::from(met) / rays,
-    }
+    let count = f64::from(count);
+    (sum.map(|channel| channel / count), f64::from(met) / count)
 }
 
 /// Double precision decides every ray but those whose own cubics touch the iso value to the last bit;
@@ -165,6 +257,8 @@ fn fill(frame: &mut Frame, pixel: usize, seen: &PixelResult, scene: &Scene) {
     set(layers, STEPS, pixel, result.cells);
     set(layers, KIND, pixel, result.kind as u32);
     set(layers, COVERAGE, pixel, seen.coverage as f32);
+    set(layers, OCCLUSION, pixel, result.occlusion as f32);
+    set(layers, COC, pixel, seen.circle_px as f32);
     set(
         layers,
         CERTIFICATE,

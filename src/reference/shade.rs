@@ -1,63 +1,123 @@
-//! Phong's reflection on a surface with two sides.
+//! Phong's reflection of several lights on a surface with two sides.
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
-use crate::scene::{Light, Phong, Reflection};
+use crate::scene::{Camera, Light, LightFrom, Phong, Reflection};
 
-/// How a ray's points are lit: the model, and the directions toward viewer and light.
+/// A light of the scene: from where it shines, and what of it is reflected at most.
 #[derive(Debug, Clone, Copy)]
+pub struct Lamp {
+    /// From where it shines, world space.
+    pub from: LightFrom,
+    /// The factor of the base colour where the light is faced.
+    diffuse: [f64; 3],
+    /// The factor of the specular term.
+    specular: [f64; 3],
+}
+
+/// What a point makes of light: a factor of its base colour, and light of its own colour.
+#[derive(Debug, Clone, Copy)]
+struct Reflected {
+    body: [f64; 3],
+    gloss: [f64; 3],
+}
+
+/// How a picture's points are lit: the model and the lights.
+#[derive(Debug, Clone)]
 pub struct Lighting {
     phong: Phong,
+    lamps: SmallVec<[Lamp; Light::MAX_COUNT]>,
+}
+
+/// A point that is lit.
+#[derive(Debug, Clone, Copy)]
+pub struct LitPoint {
+    /// Where it is, world space, mm.
+    pub at_world: DVec3,
     /// The unit vector toward the viewer, world space.
     pub to_viewer: DVec3,
-    /// The unit vector toward the light, world space.
-    pub to_light: DVec3,
+    /// The unit normal, world space, of either side.
+    pub normal: DVec3,
 }
 
 impl Lighting {
-    /// Prepares the lighting of a ray of the unit direction `dir_world`.
-    pub fn new(phong: Phong, light: Light, dir_world: DVec3) -> Self {
-        let to_viewer = -dir_world;
+    /// Prepares the lighting of a camera's picture.
+    pub fn new(phong: Phong, lights: &[Light], camera: &Camera) -> Self {
+        let lamp = |light: &Light| {
+            let (diffuse, specular) = phong.of_light(*light);
+            Lamp {
+                from: light.shines_from(camera),
+                diffuse,
+                specular,
+            }
+        };
         Self {
             phong,
-            to_viewer,
-            to_light: match light {
-                Light::Headlight => to_viewer,
-                Light::Distant { toward_light } => toward_light.unit(),
-            },
+            lamps: lights.iter().map(lamp).collect(),
         }
     }
 
-    /// The linear light reflected by a point of base colour `color`: `color·(ambient + diffuse·max(n·l,
-    /// 0)) + specular·s`, after n is turned to the viewer. A point that faces away from the light has no
-    /// specular term.
-    pub fn reflect(&self, color: [f64; 3], normal: DVec3) -> [f64; 3] {
-        let p = &self.phong;
-        let n = if normal.dot(self.to_viewer) < 0.0 {
+    /// The lights, in the scene's order.
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
+    }
+
+    /// The linear light reflected by a point of base colour `color` whose every light is visible, and which the share
+    /// `reached` of the light from everywhere gets to:
+    /// `color·ambient·reached + Σ L·(color·diffuse·max(n·l, 0) + specular·s)`, after n is turned to the viewer.
+    pub fn reflect(&self, color: [f64; 3], point: LitPoint, reached: f64) -> [f64; 3] {
+        let ambient = Reflected {
+            body: self.phong.ambient_light().map(|channel| channel * reached),
+            gloss: [0.0; 3],
+        };
+        let all =
+            (self.lamps.iter()).fold(ambient, |sum, lamp| self.with_light(sum, lamp, point, 1.0));
+        std::array::from_fn(|c| color[c] * all.body[c] + all.gloss[c])
+    }
+
+    /// What one light adds, of which the share `visibility` reaches the point. A point that faces away
+    /// from the light has no specular term.
+    fn with_light(
+        &self,
+        sum: Reflected,
+        lamp: &Lamp,
+        point: LitPoint,
+        visibility: f64,
+    ) -> Reflected {
+        let LitPoint {
+            at_world,
+            to_viewer,
+            normal,
+        } = point;
+        let n = if normal.dot(to_viewer) < 0.0 {
             -normal
         } else {
             normal
         };
-        let facing = n.dot(self.to_light);
-        let s = if facing <= 0.0 {
-            0.0
-        } else {
-            let cosine = match p.reflection {
-                Reflection::Phong => (2.0 * facing * n - self.to_light).dot(self.to_viewer),
-                Reflection::BlinnPhong => {
-                    n.dot((self.to_light + self.to_viewer).normalize_or_zero())
-                }
-            };
-            cosine.max(0.0).powf(p.shininess.get())
+        let to_light = lamp.from.toward(at_world, to_viewer);
+        let facing = n.dot(to_light);
+        if facing <= 0.0 {
+            return sum;
+        }
+        let cosine = match self.phong.reflection {
+            Reflection::Phong => (2.0 * facing * n - to_light).dot(to_viewer),
+            Reflection::BlinnPhong => n.dot((to_light + to_viewer).normalize_or_zero()),
         };
-        let body = p.ambient.get() + p.diffuse.get() * facing.max(0.0);
-        color.map(|c| c * body + p.specular.get() * s)
+        let s = cosine.max(0.0).powf(self.phong.shininess.get());
+        Reflected {
+            body: std::array::from_fn(|c| sum.body[c] + visibility * (lamp.diffuse[c] * facing)),
+            gloss: std::array::from_fn(|c| sum.gloss[c] + visibility * (lamp.specular[c] * s)),
+        }
     }
 
     /// A bound of any channel of [`Self::reflect`] for colours up to 1.
     pub fn brightest(&self) -> f64 {
-        let p = &self.phong;
-        p.ambient.get() + p.diffuse.get() + p.specular.get()
+        let most = |c: usize| {
+            let of_lamps = self.lamps.iter().map(|l| l.diffuse[c] + l.specular[c]);
+            self.phong.ambient_light()[c] + of_lamps.sum::<f64>()
+        };
+        (0..3).map(most).fold(0.0, f64::max)
     }
 }
 

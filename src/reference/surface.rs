@@ -17,6 +17,8 @@ pub struct Crossing {
     pub value: f64,
     /// ∇Φ in index space; 0 on a cap.
     pub gradient: [f64; 3],
+    /// The box in which it lies.
+    pub cell: [usize; 3],
     /// The face or plane that a cap closes, whose normal it has.
     pub cap: Option<Entry>,
 }
@@ -65,6 +67,7 @@ pub fn first_crossing<T: Voxel>(
             gradient: field
                 .gradient(&segment, gradient)
                 .map(|component| component.at(s)),
+            cell: segment.cell,
             cap: None,
         };
         if walked == 1 && inside && caps && interval.entry.is_some() {
@@ -72,6 +75,7 @@ pub fn first_crossing<T: Voxel>(
                 at_mm: 0.0,
                 value: value(0.0),
                 gradient: [0.0; 3],
+                cell: segment.cell,
                 cap: interval.entry,
             };
             return (Some(cap), walked);

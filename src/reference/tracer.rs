@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::error::{Error, Result};
 use crate::extent::Range;
 use crate::frame::{Kind, Layer, Wanted};
-use crate::scene::{Emission, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
+use crate::scene::{Emission, Light, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
 use crate::volume::{Rescale, Volume, Voxel};
 use crate::with_voxels;
 
@@ -14,13 +14,27 @@ use super::emission::{self, Normals, Shading};
 use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
 use super::medium::Medium;
+use super::occlusion::{is_crossed, open_share};
 use super::projection::project;
-use super::shade::{Lighting, normal_from_gradient};
+use super::shade::{Lighting, LitPoint, normal_from_gradient};
 use super::surface::{Crossing, first_crossing};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
 /// rising and falling are distinguished.
 const NOISE_SHARE: f64 = 1e-13;
+
+/// How far from a point of the surface the rays that leave it begin, in voxels of the smallest spacing: so far that no
+/// rounding puts their beginning on the other side, unless they leave it within 1e-7 of its tangents.
+const START_VOXELS: f64 = 1e-6;
+
+/// A point of the surface, as the ray that met it sees it.
+struct SurfacePoint {
+    index: [f64; 3],
+    /// The unit normal by the field in the hit's own cell, toward the side from which it is seen; world space.
+    normal_world: DVec3,
+    /// Whether it is seen from where Φ ≥ iso.
+    seen_from_inside: bool,
+}
 
 /// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +53,8 @@ pub struct RayResult {
     pub cells: u32,
     /// The kind of thing that the ray meets.
     pub kind: Kind,
+    /// The share of the light from everywhere that the surface keeps from the hit; 0 where none is asked for.
+    pub occlusion: f64,
 }
 
 impl RayResult {
@@ -49,12 +65,13 @@ impl RayResult {
         value: 0.0,
         cells: 0,
         kind: Kind::Nothing,
+        occlusion: 0.0,
     };
 }
 
 /// A volume and a scene, prepared for casting rays. Φ is followed without the calibration's intercept,
 /// so that values far from zero keep their digits. Of the scene it uses the picture, the clip
-/// planes, the light, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
+/// planes, the lights with the camera that some are fixed to, the gradient and the filter; step, refinement, traversal and early termination are the device's alone.
 pub struct Tracer<'a> {
     volume: &'a Volume,
     scene: &'a Scene,
@@ -63,6 +80,7 @@ pub struct Tracer<'a> {
     clip_planes: Vec<IndexPlane>,
     noise: f64,
     medium: Option<Medium>,
+    lighting: Option<Lighting>,
     wanted: Wanted,
 }
 
@@ -70,8 +88,9 @@ impl<'a> Tracer<'a> {
     /// Prepares a volume and a scene for casting rays.
     ///
     /// # Errors
-    /// The volume's spacing is too small for double precision.
+    /// The volume's spacing is too small for double precision; usage: more than [`Light::MAX_COUNT`] lights.
     pub fn new(volume: &'a Volume, scene: &'a Scene) -> Result<Self> {
+        Light::check_count(&scene.lights)?;
         let (range, slope) = (volume.stored_range(), volume.rescale().slope);
         let magnitude = slope * range.min.abs().max(range.max.abs());
         let index_from_world = volume.geometry().index_from_world().matrix3;
@@ -98,6 +117,7 @@ impl<'a> Tracer<'a> {
                 }
                 _ => None,
             },
+            lighting: lighting(scene),
             wanted: Wanted::NONE,
         })
     }
@@ -129,51 +149,137 @@ impl<'a> Tracer<'a> {
                 self.volume.rescale().slope,
                 self.scene.sampling.filter,
             );
-            self.see(&field, &interval, ray.dir_world)
+            self.see(&field, &interval, ray)
         })
     }
 
-    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, dir_world: DVec3) -> RayResult {
+    fn see<T: Voxel>(&self, field: &Field<T>, interval: &Interval, ray: Ray) -> RayResult {
         match &self.scene.picture {
             Picture::Surface { iso, caps, .. } => {
                 let iso = self.volume.rescale().without_intercept(*iso);
                 let (crossing, cells) =
                     first_crossing(field, interval, iso, *caps, self.scene.gradient);
                 let seen = crossing.map_or(RayResult::NOTHING, |crossing| {
-                    self.surface(&crossing, interval, dir_world)
+                    self.surface(field, &crossing, interval, ray)
                 });
                 RayResult { cells, ..seen }
             }
             Picture::Projection { of, window } => self.projection(field, interval, *of, *window),
-            Picture::Emission(_) => self.emission(field, interval, dir_world),
+            Picture::Emission(_) => self.emission(field, interval, ray),
         }
     }
 
-    fn surface(&self, crossing: &Crossing, interval: &Interval, dir_world: DVec3) -> RayResult {
+    fn surface<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        crossing: &Crossing,
+        interval: &Interval,
+        ray: Ray,
+    ) -> RayResult {
+        let to_viewer = -ray.dir_world;
         let normal_world = match crossing.cap {
             Some(entry) => self.outward_normal(entry),
             None => {
                 let gradient = DVec3::from_array(crossing.gradient);
-                normal_from_gradient(self.gradient_world_from_index() * gradient, -dir_world)
+                normal_from_gradient(self.gradient_world_from_index() * gradient, to_viewer)
             }
         };
-        let Picture::Surface { color, phong, .. } = &self.scene.picture else {
+        let Picture::Surface { iso, color, .. } = &self.scene.picture else {
             return RayResult::NOTHING;
         };
-        let [r, g, b] = match phong {
-            Some(phong) => {
-                Lighting::new(*phong, self.scene.light, dir_world).reflect(color.0, normal_world)
+        let iso = self.volume.rescale().without_intercept(*iso);
+        let occlusion = self.scene.ambient_occlusion.map_or(0.0, |asked| {
+            let point = self.surface_point(field, crossing, interval, ray.dir_world);
+            point.map_or(0.0, |point| {
+                self.occlusion(field, &point, iso, asked.distance.get())
+            })
+        });
+        let depth_mm = interval.enter_mm + crossing.at_mm;
+        let [r, g, b] = match &self.lighting {
+            Some(lighting) => {
+                let point = LitPoint {
+                    at_world: ray.origin_world + ray.dir_world * depth_mm,
+                    to_viewer,
+                    normal: normal_world,
+                };
+                lighting.reflect(color.0, point, self.reached(occlusion))
             }
             None => color.0,
         };
         RayResult {
             color: [r, g, b, 1.0],
-            depth_mm: interval.enter_mm + crossing.at_mm,
+            depth_mm,
             normal_world,
             value: crossing.value + self.volume.rescale().intercept,
             cells: 0,
             kind: crossing.kind(),
+            occlusion,
         }
+    }
+
+    /// The share of the light from everywhere that reaches a point of which this share is occluded.
+    fn reached(&self, occlusion: f64) -> f64 {
+        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength.get());
+        1.0 - strength * occlusion
+    }
+
+    /// The point of the surface that a ray meets; `None` for a cap: the space before it is empty, since the volume that clip
+    /// planes leave is convex.
+    fn surface_point<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        crossing: &Crossing,
+        interval: &Interval,
+        dir_world: DVec3,
+    ) -> Option<SurfacePoint> {
+        if crossing.cap.is_some() {
+            return None;
+        }
+        let index: [f64; 3] =
+            std::array::from_fn(|a| interval.start[a] + interval.dir[a] * crossing.at_mm);
+        let gradient = DVec3::from_array(field.slope_in(crossing.cell, index));
+        let down = normal_from_gradient(self.gradient_world_from_index() * gradient, -dir_world);
+        let seen_from_inside = down.dot(dir_world) > 0.0;
+        Some(SurfacePoint {
+            index,
+            normal_world: if seen_from_inside { -down } else { down },
+            seen_from_inside,
+        })
+    }
+
+    /// 1 − A of a point, A its accessibility within a distance.
+    fn occlusion<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        point: &SurfacePoint,
+        iso: f64,
+        distance_mm: f64,
+    ) -> f64 {
+        1.0 - open_share(point.normal_world, |dir_world| {
+            let Some(interval) = self.interval_from(point, dir_world, distance_mm) else {
+                return true;
+            };
+            !is_crossed(field, &interval, iso, point.seen_from_inside)
+        })
+    }
+
+    /// The part of a ray from a point of the surface that is seen of it; `None` where there is none.
+    fn interval_from(
+        &self,
+        point: &SurfacePoint,
+        dir_world: DVec3,
+        distance_mm: f64,
+    ) -> Option<Interval> {
+        let dir = (self.index_from_world * dir_world).to_array();
+        let start_mm = START_VOXELS * self.volume.geometry().smallest_spacing_mm();
+        let ray = IndexRay {
+            origin: std::array::from_fn(|a| point.index[a] + dir[a] * start_mm),
+            dir,
+        };
+        let dims = self.volume.dims();
+        let mut interval = Interval::new(&ray, dims)?.clipped(&self.clip_planes, dims)?;
+        interval.length_mm = interval.length_mm.min(distance_mm - start_mm);
+        (interval.length_mm > 0.0).then_some(interval)
     }
 
     fn projection<T: Voxel>(
@@ -200,20 +306,23 @@ impl<'a> Tracer<'a> {
             value,
             cells: projected.walked,
             kind: Kind::Surface,
+            occlusion: 0.0,
         }
     }
 
-    fn emission<T: Voxel>(
-        &self,
-        field: &Field<T>,
-        interval: &Interval,
-        dir_world: DVec3,
-    ) -> RayResult {
+    fn emission<T: Voxel>(&self, field: &Field<T>, interval: &Interval, ray: Ray) -> RayResult {
         let (Some(medium), Picture::Emission(picture)) = (&self.medium, &self.scene.picture) else {
             return RayResult::NOTHING;
         };
-        let shading = picture.phong.map(|phong| Shading {
-            lighting: Lighting::new(phong, self.scene.light, dir_world),
+        let Ray {
+            origin_world,
+            dir_world,
+        } = ray;
+        let shading = self.lighting.as_ref().map(|lighting| Shading {
+            lighting,
+            start_world: origin_world + dir_world * interval.enter_mm,
+            dir_world,
+            shaded_from: picture.shaded_from.get(),
             gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
         });
@@ -280,4 +389,14 @@ impl<'a> Tracer<'a> {
         outward[face.axis] = if face.low { -1.0 } else { 1.0 };
         (self.gradient_world_from_index() * outward).normalize_or_zero()
     }
+}
+
+/// How a shaded picture is lit.
+fn lighting(scene: &Scene) -> Option<Lighting> {
+    let phong = match &scene.picture {
+        Picture::Surface { phong, .. } => *phong,
+        Picture::Emission(emission) => emission.phong,
+        Picture::Projection { .. } => None,
+    };
+    phong.map(|phong| Lighting::new(phong, &scene.lights, &scene.camera))
 }

@@ -110,6 +110,7 @@ impl<'a> RayCaster<'a> {
             volume: on_device,
             occupancy: &occupancy,
             clip: &clip,
+            jitter: None,
         };
         let cast = surface_cast(iso, caps, &sampling);
         let mut hit = run.plane("hits", f32::INFINITY)?;

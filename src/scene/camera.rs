@@ -32,6 +32,24 @@ pub struct Ray {
     pub dir_world: DVec3,
 }
 
+impl Ray {
+    /// The point of the ray at a depth along the view axis of its camera, mm from the eye plane.
+    pub fn at_depth(self, camera: &Camera, axial_mm: f64) -> DVec3 {
+        let from_eye = self.origin_world - camera.eye_world;
+        let ahead = axial_mm - from_eye.dot(camera.forward);
+        self.origin_world + self.dir_world * (ahead / self.dir_world.dot(camera.forward))
+    }
+}
+
+/// A point of a thin lens, by the ray through it: of the rays of a pixel, all of which meet on the focal plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LensPoint {
+    /// What its ray gains aside of the pinhole's, to the right and up, per mm along the view axis.
+    pub slope: [f64; 2],
+    /// How far from the eye the focal plane is along the view axis, mm.
+    pub focus_mm: f64,
+}
+
 /// An eye with an orthonormal basis: `right = normalize(forward × up)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
@@ -176,6 +194,28 @@ impl Camera {
         let u = (2.0 * x_px - f64::from(size.width())) / height;
         let v = (height - 2.0 * y_px) / height;
         (u * half_height, v * half_height)
+    }
+
+    /// What a point of the lens adds to the rays of the pinhole: to where they leave the eye plane, and to their directions
+    /// per mm along the view axis; world space.
+    pub fn lens_shift(&self, point: LensPoint) -> [DVec3; 2] {
+        let [across, up] = point.slope;
+        let slope = self.right * across + self.up * up;
+        [slope * -point.focus_mm, slope]
+    }
+
+    /// The ray of a point of the image through a point of the lens, as [`Camera::ray`]; it starts on the eye plane.
+    pub fn ray_through(&self, size: ImageSize, x_px: f64, y_px: f64, point: LensPoint) -> Ray {
+        let Ray {
+            origin_world,
+            dir_world,
+        } = self.ray(size, x_px, y_px);
+        let [aside, slope] = self.lens_shift(point);
+        let per_mm = dir_world / dir_world.dot(self.forward);
+        Ray {
+            origin_world: origin_world + aside,
+            dir_world: (per_mm + slope).normalize(),
+        }
     }
 
     /// The ray through a point of the image, in pixels from its top left corner: pixel (i,j)'s

@@ -7,6 +7,8 @@ pub struct Rgb(pub [f64; 3]);
 impl Rgb {
     /// Black.
     pub const BLACK: Self = Self([0.0; 3]);
+    /// White.
+    pub const WHITE: Self = Self([1.0; 3]);
 
     /// Converts sRGB-encoded channels in 0..1.
     pub fn from_srgb(srgb: [f64; 3]) -> Self {

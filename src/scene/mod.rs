@@ -9,12 +9,17 @@ mod antialias;
 mod camera;
 mod clip;
 mod color;
+mod depth_of_field;
 pub(crate) mod enum_names;
 mod gradient;
 mod homogeneity;
+mod jitter;
+mod keyed_text;
 mod light;
 mod mode;
+mod occlusion;
 mod path;
+mod phong;
 mod picture;
 mod quadrature;
 pub(crate) mod quantities;
@@ -28,19 +33,23 @@ mod transfer_file;
 mod view;
 
 pub use antialias::AntiAliasing;
-pub use camera::{Camera, Lens, Ray};
+pub use camera::{Camera, Lens, LensPoint, Ray};
 pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use depth_of_field::{Aperture, DepthOfField, DofMethod, Focus};
 pub use gradient::{Gradient, Precomputed};
 pub use homogeneity::{Homogeneity, HomogeneityRule};
-pub use light::{Direction, Light, Phong, Reflection};
+pub use jitter::{Interleaved, Jitter, Shift};
+pub use light::{Direction, Light, LightFrom, LightPlace};
 pub use mode::Mode;
+pub use occlusion::AmbientOcclusion;
 pub use path::{FrameCount, Orbit, OrbitAxis};
+pub use phong::{MostReflected, Phong, Reflection};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
-    Brightness, Contrast, FovDeg, Gamma, HeightMm, HomogeneityLimit, Reflectance, ScreenError,
-    Shininess, StepVoxels, Termination,
+    Brightness, Contrast, DistanceMm, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity,
+    RayCount, Reflectance, ScreenError, ShadedFrom, Share, Shininess, StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
@@ -73,8 +82,12 @@ pub struct Scene {
     pub anti_aliasing: AntiAliasing,
     /// Which pixels have rays of their own; `None`: all.
     pub sparse: Option<Sparse>,
-    /// The light source for shading.
-    pub light: Light,
+    /// The lights for shading, at most [`Light::MAX_COUNT`].
+    pub lights: Vec<Light>,
+    /// How much of the light from everywhere a surface keeps from itself; `None`: nothing.
+    pub ambient_occlusion: Option<AmbientOcclusion>,
+    /// The lens; `None`: a pinhole.
+    pub depth_of_field: Option<DepthOfField>,
     /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
     /// The tone curve of display pictures.
@@ -105,7 +118,9 @@ impl Scene {
             sampling,
             anti_aliasing: AntiAliasing::OFF,
             sparse: None,
-            light: Light::default(),
+            lights: vec![Light::default()],
+            ambient_occlusion: None,
+            depth_of_field: None,
             gradient: Gradient::default(),
             tone: Tone::default(),
         })

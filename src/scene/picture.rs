@@ -5,8 +5,8 @@ use crate::extent::Range;
 use crate::subject::Subject;
 
 use super::{
-    Homogeneity, Mode, Phong, Quadrature, Refine, Rgb, SrgbColor, Termination, TransferFile,
-    TransferFunction,
+    Homogeneity, Mode, Phong, Quadrature, Refine, Rgb, ShadedFrom, SrgbColor, Termination,
+    TransferFile, TransferFunction,
 };
 
 /// The kind of picture (`--mode`).
@@ -43,6 +43,10 @@ pub struct Emission {
     pub transfer: TransferFunction,
     /// `None`: the transfer function's colours alone.
     pub phong: Option<Phong>,
+    /// Where the medium is shaded: its colour is mixed with the shaded one, whose share is
+    /// min(1, |∇Φ| / this), |∇Φ| by the differences that give the normal; where this is 0, the shaded one
+    /// everywhere. In noise, where normals are of any direction, gradients are small.
+    pub shaded_from: ShadedFrom,
     /// The quadrature rule, with its error bound if it has one.
     pub quadrature: Quadrature,
     /// A ray ends where its opacity exceeds this; the colour lost is at most
@@ -62,6 +66,7 @@ impl Emission {
         Self {
             transfer,
             phong: None,
+            shaded_from: ShadedFrom::default(),
             quadrature: Quadrature::default(),
             termination: Termination::default(),
             homogeneity: None,

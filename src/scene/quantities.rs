@@ -65,6 +65,11 @@ quantities! {
     StepVoxels = 0.5: "a step", "from 0.001 to 100 voxels", |v| (0.001..=100.0).contains(&v);
     /// Share of light that a surface reflects: ambient, diffuse, specular.
     Reflectance: "a reflectance", "from 0 to 10", |v| (0.0..=10.0).contains(&v);
+    /// Factor of a light's colour, in linear light.
+    Intensity: "an intensity", "from 0 to 1000", |v| (0.0..=1000.0).contains(&v);
+    /// Magnitude of Φ's gradient, values per mm, from which a medium is shaded fully; 0: everywhere.
+    ShadedFrom = 0.0: "a gradient to shade from", "from 0 to 1e30 values per mm",
+        |v| (0.0..=1e30).contains(&v);
     /// Exponent of the specular term.
     Shininess = 32.0: "a shininess", "from 1 to 1000", |v| (1.0..=1000.0).contains(&v);
     /// Opacity at which a ray ends: the colour lost is at most 1 minus this times the brightest colour.
@@ -74,12 +79,64 @@ quantities! {
     /// How much a pixel that is not cast may differ from what its ray would show: voxels of depth of a surface, a
     /// share of the volume's range of values of a projection, a channel's linear light of a medium.
     ScreenError: "a screen error", "from 0 to 10", |v| (0.0..=10.0).contains(&v);
+    /// How far something may act, mm.
+    DistanceMm: "a distance", "above 0 and at most 1e12 mm", |v| v > 0.0 && v <= 1e12;
+    /// A share of a whole.
+    Share = 1.0: "a share", "from 0 to 1", |v| (0.0..=1.0).contains(&v);
     /// Number added to the encoded channels of a display picture.
     Brightness = 0.0: "a brightness", "from -1 to 1", |v| (-1.0..=1.0).contains(&v);
     /// Slope about a display picture's middle grey.
     Contrast = 1.0: "a contrast", "from 0 to 100", |v| (0.0..=100.0).contains(&v);
     /// Reciprocal of the exponent of a display picture's channels.
     Gamma = 1.0: "a gamma", "from 0.1 to 10", |v| (0.1..=10.0).contains(&v);
+}
+
+/// How many rays estimate something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RayCount(u32);
+
+impl RayCount {
+    /// The most of them.
+    pub const MAX: u32 = 1024;
+
+    /// Constructs a number of rays that is known.
+    pub(crate) const fn of(rays: u32) -> Self {
+        Self(rays)
+    }
+
+    /// Constructs a number of rays.
+    ///
+    /// # Errors
+    /// Usage: a number outside 1 to [`Self::MAX`].
+    pub fn new(rays: u32) -> crate::error::Result<Self> {
+        rays.to_string().parse()
+    }
+
+    /// Returns the number.
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+}
+
+impl std::str::FromStr for RayCount {
+    type Err = crate::error::Error;
+
+    fn from_str(text: &str) -> crate::error::Result<Self> {
+        let rays = text.trim().parse().ok();
+        let rays = rays.filter(|rays| (1..=Self::MAX).contains(rays));
+        rays.map(Self).ok_or_else(|| {
+            crate::error::Error::usage(format!(
+                "'{text}' is not a number of rays: write a whole number from 1 to {}",
+                Self::MAX
+            ))
+        })
+    }
+}
+
+impl std::fmt::Display for RayCount {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
 }
 
 impl Reflectance {
@@ -89,6 +146,18 @@ impl Reflectance {
     pub const DIFFUSE: Self = Self(0.9);
     /// Light mirrored, where none is given.
     pub const SPECULAR: Self = Self(0.2);
+    /// Light from everywhere, and light reflected in all directions, where none is given and the former is occluded.
+    pub const OCCLUDED: Self = Self(0.5);
+}
+
+impl Share {
+    /// Nothing of it.
+    pub const NONE: Self = Self(0.0);
+}
+
+impl Intensity {
+    /// The intensity of a light where none is given.
+    pub const ONE: Self = Self(1.0);
 }
 
 impl Termination {
@@ -124,10 +193,13 @@ mod tests {
         assert!(Brightness::new(Brightness::default().get()).is_ok());
         assert!(Contrast::new(Contrast::default().get()).is_ok());
         assert!(Gamma::new(Gamma::default().get()).is_ok());
+        assert!(Intensity::new(Intensity::ONE.get()).is_ok());
+        assert!(ShadedFrom::new(ShadedFrom::default().get()).is_ok());
         for reflectance in [
             Reflectance::AMBIENT,
             Reflectance::DIFFUSE,
             Reflectance::SPECULAR,
+            Reflectance::OCCLUDED,
         ] {
             assert!(Reflectance::new(reflectance.get()).is_ok());
         }

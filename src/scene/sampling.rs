@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::StepVoxels;
+use super::{DofMethod, Jitter, StepVoxels};
 use crate::error::{Error, Result};
 
 /// Reconstruction of Φ between voxel centres.
@@ -216,6 +216,8 @@ pub struct Sampling {
     pub method: SamplingMethod,
     /// Distance of samples where they are at fixed steps.
     pub step: StepVoxels,
+    /// How the samples of each ray are shifted where they are at fixed steps.
+    pub jitter: Jitter,
     /// The reconstruction filter.
     pub filter: Filter,
     /// Where it is applied; surfaces at fixed steps alone make use of it, and without a probe.
@@ -229,6 +231,8 @@ pub struct Sampling {
     pub probe: bool,
     /// How the device holds and reads the voxels.
     pub voxels: Storage,
+    /// How depth of field is made.
+    pub dof: DofMethod,
 }
 
 impl Default for Sampling {
@@ -236,12 +240,14 @@ impl Default for Sampling {
         Self {
             method: SamplingMethod::default(),
             step: StepVoxels::default(),
+            jitter: Jitter::default(),
             filter: Filter::Linear,
             recon: Reconstruction::default(),
             traverse: Traverse::Distance,
             skip: true,
             probe: true,
             voxels: Storage::default(),
+            dof: DofMethod::default(),
         }
     }
 }

@@ -14,6 +14,8 @@ pub struct SrgbColor([f64; 3]);
 impl SrgbColor {
     /// Black.
     pub const BLACK: Self = Self([0.0; 3]);
+    /// White.
+    pub const WHITE: Self = Self([1.0; 3]);
     /// The colour of surfaces where none is given: warm ivory.
     pub const IVORY: Self = Self([0.94, 0.87, 0.76]);
 

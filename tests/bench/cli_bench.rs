@@ -6,7 +6,7 @@ use crate::common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 21] = [
+const EXPERIMENTS: [&str; 23] = [
     "vessels",
     "pareto",
     "speed",
@@ -19,6 +19,7 @@ const EXPERIMENTS: [&str; 21] = [
     "b1",
     "b2",
     "b3",
+    "b4",
     "b8",
     "b9",
     "b10",
@@ -28,6 +29,7 @@ const EXPERIMENTS: [&str; 21] = [
     "b17",
     "b18",
     "tolerance",
+    "check-sampling",
 ];
 
 #[test]

@@ -9,6 +9,7 @@ mod cli_bench;
 mod cli_bench_papers;
 mod cli_bench_pareto;
 mod cli_bench_resume;
+mod cli_bench_sampling;
 mod cli_bench_sparse;
 mod cli_bench_speed;
 mod tolerance;

@@ -320,6 +320,18 @@ fn wrong_usage_is_exit_2() {
             "render ball.nrrd -o a.png --scene planes.toml",
             "65 clip planes: there may be at most 64",
         ),
+        (
+            "render ball.nrrd -o a.png --light headlight --light 1,0,0 --light 0,1,0 --light 0,0,1 --light 1,1,1",
+            "5 lights: there may be at most 4",
+        ),
+        (
+            "render ball.nrrd -o a.png --light camera:0,0,0",
+            "a light at 0,0,0 has no direction",
+        ),
+        (
+            "render ball.nrrd -o a.png --shading none --light point:1,2,3",
+            "without shading",
+        ),
         ("info", "no volume"),
         ("info ball.nrrd --mode mip", "--mode"),
         ("phantom cube -o a.nrrd", "cube"),

@@ -13,4 +13,5 @@ mod cli_hardcase;
 mod cli_info;
 mod cli_limits;
 mod cli_program;
+mod cli_sampling;
 mod library_examples;

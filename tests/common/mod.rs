@@ -139,7 +139,9 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
             method: SamplingMethod::Fixed,
             ..Sampling::default()
         },
-        light: Light::default(),
+        lights: vec![Light::default()],
+        ambient_occlusion: None,
+        depth_of_field: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

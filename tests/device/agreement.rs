@@ -7,9 +7,9 @@ use crate::common;
 use angioray::extent::Dims;
 use angioray::frame::Frame;
 use angioray::scene::{
-    Brightness, Camera, ClipPlane, Contrast, Emission, Filter, Gamma, Gradient, Knot, Lens, Light,
-    Phong, Picture, Projection, Quadrature, Reflection, Rgb, Scene, StepVoxels, Termination, Tone,
-    TransferFunction, Window,
+    Brightness, Camera, ClipPlane, Contrast, Emission, Filter, Gamma, Gradient, Intensity, Knot,
+    Lens, Light, Phong, Picture, Projection, Quadrature, Reflection, Rgb, Scene, ShadedFrom,
+    StepVoxels, Termination, Tone, TransferFunction, Window,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume, Voxels};
 use common::Figure::{
@@ -43,6 +43,62 @@ enum From {
     Orthographic,
 }
 
+/// What lights a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Lit {
+    AtEye,
+    /// From far away, fixed to the patient; to the camera.
+    Side,
+    Camera,
+    /// From a point among what is seen.
+    Near,
+    /// From four of all kinds and colours, on a material with colours of its own.
+    Four,
+}
+
+impl Lit {
+    fn lights(self, volume: &Volume) -> Vec<Light> {
+        let (center, radius_mm) = volume.bounding_sphere();
+        let side = Light::distant(DVec3::new(0.36, -0.48, 0.8)).unwrap();
+        let camera = Light::of_camera(DVec3::new(-0.7, 0.6, 0.4)).unwrap();
+        let near = center + DVec3::new(0.1, -0.4, 0.3) * radius_mm;
+        let near = Light::point(near).unwrap();
+        let tinted = |light: Light, color: &str| Light {
+            color: color.parse().unwrap(),
+            intensity: Intensity::new(0.6).unwrap(),
+            ..light
+        };
+        match self {
+            Self::AtEye => vec![Light::HEADLIGHT],
+            Self::Side => vec![side],
+            Self::Camera => vec![camera],
+            Self::Near => vec![near],
+            Self::Four => vec![
+                tinted(side, "red"),
+                tinted(camera, "#80ff40"),
+                tinted(near, "0.2,0.3,1"),
+                tinted(Light::HEADLIGHT, "ivory"),
+            ],
+        }
+    }
+
+    fn phong(self, reflection: Reflection) -> Phong {
+        let white = Phong {
+            reflection,
+            ..Phong::default()
+        };
+        match self {
+            Self::Four => Phong {
+                ambient_color: Rgb([0.2, 0.4, 1.0]),
+                diffuse_color: Rgb([1.0, 0.9, 0.7]),
+                specular_color: Rgb([0.5, 1.0, 0.8]),
+                ..white
+            },
+            _ => white,
+        }
+    }
+}
+
 /// One picture of one volume, and how far each of its planes may be from the reference's.
 #[derive(Clone, Copy)]
 struct Row {
@@ -50,8 +106,9 @@ struct Row {
     shown: Shown,
     /// `None`: no shading.
     reflection: Option<Reflection>,
-    /// `None`: at the eye.
-    toward_light: Option<[f64; 3]>,
+    lit: Lit,
+    /// The gradient from which a medium is shaded fully, as a share of the range per voxel.
+    shaded_from: f64,
     from: From,
     /// Of planes about the volume's centre: the normal, and how far, in radii of the bounding
     /// sphere, the plane lies beyond it.
@@ -68,7 +125,8 @@ const PLAIN: Row = Row {
     volume: "u8",
     shown: ISO,
     reflection: None,
-    toward_light: None,
+    lit: Lit::AtEye,
+    shaded_from: 0.0,
     from: From::Outside,
     clip: &[],
     gradient: Gradient::Central,
@@ -88,7 +146,6 @@ const PHONG: Option<Reflection> = Some(Reflection::Phong);
 const BLINN: Option<Reflection> = Some(Reflection::BlinnPhong);
 /// A wedge: one plane cuts away the near side, one the upper.
 const WEDGE: &[([f64; 3], f64)] = &[([-0.4, -0.9, 0.3], 0.1), ([0.02, 0.01, -0.05], 0.2)];
-const SIDE: Option<[f64; 3]> = Some([0.36, -0.48, 0.8]);
 
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
@@ -127,8 +184,16 @@ const ROWS: &[Row] = &[
     Row { limits: &[(ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: PHONG, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
     Row { reflection: BLINN, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
-    Row { reflection: PHONG, toward_light: SIDE, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
-    Row { reflection: BLINN, toward_light: SIDE, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
+    Row { reflection: PHONG, lit: Lit::Side, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
+    Row { reflection: BLINN, lit: Lit::Side, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
+    Row { reflection: PHONG, lit: Lit::Camera, limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
+    Row { reflection: BLINN, lit: Lit::Near, limits: &[(ColorP99, 2e-4), (ColorMean, 2e-5)], ..PLAIN },
+    Row { reflection: PHONG, lit: Lit::Near, from: From::Orthographic, limits: &[(ColorP99, 2e-4), (ColorMean, 2e-5)], ..PLAIN },
+    Row { reflection: PHONG, lit: Lit::Four, from: From::Inside, limits: &[(ColorP99, 2e-4)], ..PLAIN },
+    Row { reflection: PHONG, lit: Lit::Four, clip: WEDGE, limits: &[(ColorP99, 2e-4), (ColorMean, 1e-4)], ..PLAIN },
+    Row { volume: "u16", reflection: BLINN, lit: Lit::Four, limits: &[(ColorP99, 2e-4)], ..PLAIN },
+    Row { volume: "i16", reflection: PHONG, lit: Lit::Near, limits: &[(ColorP99, 2e-4)], ..PLAIN },
+    Row { volume: "falling", reflection: PHONG, lit: Lit::Four, limits: &[(ColorP99, 2e-4)], ..PLAIN },
     Row { reflection: PHONG, tone: (0.1, 1.3, 2.2, [0.1, 0.3, 0.7]), limits: &[(ColorP99, 1e-4), (ColorMean, 1e-5)], ..PLAIN },
     Row { shown: Shown::Dvr, tone: (-0.1, 0.7, 0.6, [0.9, 0.2, 0.5]), limits: &[(ColorMax, 0.01)], ..PLAIN },
     // Projections.
@@ -147,8 +212,15 @@ const ROWS: &[Row] = &[
     Row { shown: Shown::Dvr, from: From::Orthographic, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     Row { shown: Shown::Dvr, reflection: PHONG, step_voxels: 0.25, limits: &[(ColorMax, 0.02)], ..PLAIN },
     // The light goes out at once where normals turn from it: fine steps find where.
-    Row { shown: Shown::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
-    Row { shown: Shown::Dvr, reflection: BLINN, toward_light: SIDE, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: BLINN, lit: Lit::Side, step_voxels: 0.25, limits: &[(ColorP99, 0.01), (ColorMax, 0.05)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: BLINN, lit: Lit::Side, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: PHONG, lit: Lit::Camera, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: PHONG, lit: Lit::Near, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: BLINN, lit: Lit::Four, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::Dvr, reflection: PHONG, lit: Lit::Four, shaded_from: 0.1, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { shown: Shown::DvrBy("adaptive"), reflection: PHONG, lit: Lit::Four, shaded_from: 0.1, from: From::Orthographic, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { volume: "u16", shown: Shown::Dvr, reflection: PHONG, lit: Lit::Near, shaded_from: 0.05, step_voxels: 0.0625, limits: &[(ColorMax, 0.01)], ..PLAIN },
+    Row { volume: "falling", shown: Shown::DvrBy("adaptive"), reflection: BLINN, lit: Lit::Four, shaded_from: 0.1, clip: WEDGE, limits: &[(ColorMax, 0.01)], ..PLAIN },
     Row { shown: Shown::Dvr, filter: Filter::Nearest, step_voxels: 0.125, limits: &[(AlphaMax, 0.03)], ..PLAIN },
     // Its layers, by every rule; pixels at the opacity from which there are any may have them or not.
     Row { shown: Shown::DvrBy("riemann"), step_voxels: 0.25, limits: &[(Kind, 0.003), (DepthMean, 0.2), (NormalMean, 3.0), (ValueMean, 0.008)], ..PLAIN },
@@ -170,7 +242,7 @@ const ROWS: &[Row] = &[
     Row { volume: "u16", shown: Shown::Mean, limits: &[(ValueMean, 0.001)], ..PLAIN },
     Row { volume: "u16", shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     // Left-handed, signed.
-    Row { volume: "i16", reflection: PHONG, toward_light: SIDE, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
+    Row { volume: "i16", reflection: PHONG, lit: Lit::Side, limits: &[(Kind, 0.002), (DepthP99, 1e-3), (NormalMean, 0.01), (ColorP99, 1e-4)], ..PLAIN },
     Row { volume: "i16", shown: Shown::Mip, from: From::Orthographic, limits: &[(ValueMean, 0.001)], ..PLAIN },
     Row { volume: "i16", shown: Shown::Dvr, limits: &[(AlphaMax, 0.006), (ColorMax, 0.015)], ..PLAIN },
     // Sheared axes; the calibration falls, so that the voxels are stored negated.
@@ -303,10 +375,7 @@ fn camera(volume: &Volume, from: From) -> Camera {
 fn picture(row: &Row, volume: &Volume) -> Picture {
     let range = volume.range();
     let window = Window::new(range.at(0.05), range.at(0.95)).unwrap();
-    let phong = row.reflection.map(|reflection| Phong {
-        reflection,
-        ..Phong::default()
-    });
+    let phong = row.reflection.map(|reflection| row.lit.phong(reflection));
     let projection = |of| Picture::Projection { of, window };
     match row.shown {
         Shown::Iso { refine, caps } => Picture::Surface {
@@ -337,10 +406,12 @@ fn picture(row: &Row, volume: &Volume) -> Picture {
                 knot(0.5, [0.9, 0.3, 0.1], 0.2),
                 knot(0.8, [1.0, 0.9, 0.8], 0.6),
             ];
+            let per_voxel = range.width() / volume.geometry().smallest_spacing_mm();
             let unit_mm = 2.0 * volume.geometry().smallest_spacing_mm();
             let transfer = TransferFunction::new(knots, unit_mm).unwrap();
             Picture::Emission(Emission {
                 phong,
+                shaded_from: ShadedFrom::new(row.shaded_from * per_voxel).unwrap(),
                 quadrature,
                 termination: Termination::NEVER,
                 ..Emission::of(transfer)
@@ -362,9 +433,7 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
     scene.gradient = row.gradient;
     scene.sampling.filter = row.filter;
     scene.sampling.step = StepVoxels::new(row.step_voxels).unwrap();
-    if let Some(toward) = row.toward_light {
-        scene.light = Light::distant(DVec3::from_array(toward).normalize()).unwrap();
-    }
+    scene.lights = row.lit.lights(volume);
     let (brightness, contrast, gamma, background) = row.tone;
     scene.tone = Tone {
         background: Rgb(background),
@@ -376,12 +445,13 @@ fn scene(row: &Row, volume: &Volume) -> Scene {
 }
 
 fn describe(row: &Row) -> String {
-    let light = row.toward_light.map_or("headlight", |_| "distant light");
     format!(
-        "{} {:?} {:?} {light} {:?} {} planes {:?} {:?} step {}",
+        "{} {:?} {:?} {:?} from {} {:?} {} planes {:?} {:?} step {}",
         row.volume,
         row.shown,
         row.reflection,
+        row.lit,
+        row.shaded_from,
         row.from,
         row.clip.len(),
         row.gradient,

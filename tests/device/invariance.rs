@@ -89,7 +89,7 @@ pub fn pictures(range_max: f64) -> Vec<Picture> {
 }
 
 /// The planes that make up the picture: all but the counters.
-fn picture_bits(frame: &Frame) -> Vec<u32> {
+pub fn picture_bits(frame: &Frame) -> Vec<u32> {
     let bits = |v: &f32| v.to_bits();
     let mut all: Vec<u32> = frame.color.iter().flatten().map(bits).collect();
     all.extend(frame.display.iter().flatten().flatten().map(bits));

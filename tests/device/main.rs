@@ -12,7 +12,13 @@ mod exact;
 mod gradients;
 mod homogeneity;
 mod invariance;
+mod jitter;
+mod lens;
+mod lights;
 mod metamorphic;
+mod occlusion;
+#[path = "../common/occlusion.rs"]
+mod occlusion_cases;
 mod quadrature;
 mod ray_sources;
 mod recon;

@@ -74,10 +74,12 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
             step: StepVoxels::new(STEP_VOXELS).unwrap(),
             ..Sampling::default()
         },
-        light: Light::default(),
+        lights: vec![Light::default()],
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,
+        ambient_occlusion: None,
+        depth_of_field: None,
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;

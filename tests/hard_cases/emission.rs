@@ -93,8 +93,8 @@ fn homogeneous() {
     let whole_panels = kernel(
         "lib/ray/lattice.clh",
         &[(
-            "return min_of(lattice->length_mm, AS_FLOATS(k) * lattice->step_mm);",
-            "return AS_FLOATS(k) * lattice->step_mm;",
+            "return min_of(lattice->length_mm, steps * lattice->step_mm);",
+            "return steps * lattice->step_mm;",
         )],
     );
     check(

@@ -403,7 +403,7 @@ fn zero_gradient() {
         lines
     }
     let no_normal = kernel(
-        "lib/volume/gradient.clh",
+        "lib/math/unit.clh",
         &[(
             "Mask vanishes = ",
             "fallback.x = fallback.y = fallback.z = FLOATS(0.0f);\n    Mask vanishes = ",
@@ -434,8 +434,11 @@ fn mirrored_normals() {
         lines
     }
     let index_space = kernel(
-        "lib/volume/gradient.clh",
-        &[("volume.gradient_row_x.x * covector.x", "covector.x")],
+        "lib/volume/normal.clh",
+        &[(
+            "return turned_by_rows(volume.gradient_row_x, volume.gradient_row_y, volume.gradient_row_z, covector);",
+            "return covector;",
+        )],
     );
     check(
         "isosurface::mirrored_normals",

@@ -395,6 +395,7 @@ fn the_switches_are_read_from_the_kernels() {
         of("pass/cast_surface.cl"),
         named(&[
             ("COUNTERS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("NEAREST_MARCH", 2),
@@ -405,6 +406,7 @@ fn the_switches_are_read_from_the_kernels() {
         of("pass/cast_maximum.cl"),
         named(&[
             ("COUNTERS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("PROJECTION", 3),
@@ -417,6 +419,7 @@ fn the_switches_are_read_from_the_kernels() {
             ("COUNTERS", 2),
             ("GRADIENT", 4),
             ("HOMOGENEOUS", 2),
+            ("JITTERED", 2),
             ("LANES", 3),
             ("LAYERS", 2),
             ("NORMALS", 2),
@@ -431,7 +434,7 @@ fn the_switches_are_read_from_the_kernels() {
     );
     assert_eq!(
         of("pass/shade_surface.cl"),
-        named(&[("LANES", 3), ("RAYS", 4), ("SHADED", 2)])
+        named(&[("LANES", 3), ("OCCLUSION", 2), ("RAYS", 4), ("SHADED", 2)])
     );
     assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
     // Work-items that are no tiles of rays have one number of lanes.

@@ -160,8 +160,9 @@ const MODES: [&str; 22] = [
     "--mode dvr --quad adaptive:0.01 --shading phong",
 ];
 
-/// Fewer rays and more of them, of the last volume, which has several leaves: they share the casts with the others.
-const RAY_COUNTS: [&str; 8] = [
+/// Fewer rays and more of them, and samples of their own, of the last volume, which has several leaves: they share the casts
+/// with the others.
+const RAY_COUNTS: [&str; 13] = [
     "--mode iso --iso 40% --screen-error 0.5",
     "--mode mip --screen-error 0.3",
     "--mode dvr --shading none --screen-error 0.3",
@@ -170,6 +171,11 @@ const RAY_COUNTS: [&str; 8] = [
     "--mode dvr --shading none --aa 3:adaptive",
     "--mode mip --sparse 3 --refill flood",
     "--mode iso --iso 40% --sparse 4:0.1",
+    "--mode iso --iso 40% --aa 2 --ao rays=2,distance=3",
+    "--mode dvr --dof focus=auto,aperture=2,darken=1 --dof-method lens:2",
+    "--mode iso --iso 40% --step 0.7 --jitter interleaved:3",
+    "--mode mip --step 1.3 --jitter hash:5 --aa 2",
+    "--mode dvr --shading none --quad midpoint --jitter hash:5:2",
 ];
 
 /// No work-group divides the picture, no leaf the volumes.
@@ -198,8 +204,9 @@ fn no_pass_reads_or_writes_outside_its_buffers_or_races() {
         let counts = (MODES.len()..).zip(&RAY_COUNTS);
         let of_counts = counts.filter(|_| v + 1 == VOLUMES.len());
         for (m, mode) in of_modes.chain(of_counts) {
-            // Filters take turns, and so do all layers and none but the display's.
-            let filter = ["linear", "nearest"][(v / 2 + m / 2) % 2];
+            // Filters take turns, but for what needs gradients, and so do all layers and none but the display's.
+            let turn = (v / 2 + m / 2) % 2;
+            let filter = ["linear", "nearest"][if mode.contains("--ao") { 0 } else { turn }];
             let (layers, extension) = [("--aov all", "exr"), ("", "png")][(v / 2 + m / 4) % 2];
             let arguments = format!("{mode} --filter {filter} {layers} {VIEW}");
             jobs.push((path.clone(), arguments, format!("{v}-{m}.{extension}")));

@@ -1,5 +1,5 @@
 //! The passes build and take the arguments that their Rust functions give: for every voxel type,
-//! filter and picture with all layers and counters; for `u8` also with neither, with every gradient,
+//! filter and picture with all layers and counters; for `u8` also with samples shifted, with neither, with every gradient,
 //! and, under the linear filter, with either alone and with an octree leaf that is no power of two. The 64-bit index, which only volumes of more than 2^32 voxels select, is left to
 //! `kernel_lint`.
 
@@ -11,11 +11,11 @@ use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
 use angioray::render::{Options, Renderer};
 use angioray::scene::{
-    Emission, Filter, Gradient, Homogeneity, HomogeneityLimit, HomogeneityRule, Knot, Phong,
-    Picture, Precomputed, Projection, Quadrature, QuadratureMethod, Reconstruction, Refine, Rgb,
-    Termination, TransferFunction, Window,
+    Emission, Filter, Gradient, Homogeneity, HomogeneityLimit, HomogeneityRule, Jitter, Knot,
+    Phong, Picture, Precomputed, Projection, Quadrature, QuadratureMethod, Reconstruction, Refine,
+    Rgb, Termination, TransferFunction, Window,
 };
-use angioray::volume::{Volume, Voxels};
+use angioray::volume::{Volume, VoxelType, Voxels};
 use common::volume_of;
 
 /// With the default quadrature.
@@ -173,6 +173,12 @@ where
             let mut straight = common::scene(&volume, 8, picture.clone());
             straight.sampling.filter = filter;
             assert!(renderer.sample_field(&straight).unwrap().samples() > 0);
+            // Shifts have nothing to do with voxels.
+            if volume.voxels().voxel_type() == VoxelType::U8 {
+                straight.sampling.jitter = Jitter::Hash { seed: 1, frame: 0 };
+                let jittered = renderer.render(&straight, Wanted::ALL).unwrap();
+                launches += jittered.passes.len();
+            }
             if filter == Filter::Linear && matches!(picture, Picture::Surface { .. }) {
                 straight.sampling.recon = Reconstruction::Adaptive;
                 launches += renderer

@@ -73,7 +73,9 @@ pub fn scene(picture: Picture) -> Scene {
         picture,
         clip_planes: Vec::new(),
         sampling: Sampling::default(),
-        light: Light::Headlight,
+        lights: vec![Light::HEADLIGHT],
+        ambient_occlusion: None,
+        depth_of_field: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,
@@ -189,8 +191,8 @@ pub fn phi(volume: &Volume, p: DVec3) -> f64 {
     sum
 }
 
-/// −∇Φ/|∇Φ| in world space by the contract's central differences; `otherwise` where it is zero.
-pub fn normal(volume: &Volume, p: DVec3, otherwise: DVec3) -> DVec3 {
+/// ∇Φ in world space by the contract's central differences.
+pub fn gradient(volume: &Volume, p: DVec3) -> DVec3 {
     let gradient = DVec3::from_array([0, 1, 2].map(|axis| {
         let mut e = DVec3::ZERO;
         e[axis] = 1.0;
@@ -203,11 +205,15 @@ pub fn normal(volume: &Volume, p: DVec3, otherwise: DVec3) -> DVec3 {
         .matrix3
         .inverse()
         .transpose();
-    let world = to_world * gradient;
-    if world == DVec3::ZERO {
+    to_world * gradient
+}
+
+/// −∇Φ/|∇Φ|; `otherwise` where it is zero.
+pub fn normal(gradient: DVec3, otherwise: DVec3) -> DVec3 {
+    if gradient == DVec3::ZERO {
         otherwise
     } else {
-        -world.normalize()
+        -gradient.normalize()
     }
 }
 

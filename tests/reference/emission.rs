@@ -1,7 +1,8 @@
 //! Emission and absorption against closed forms, fine quadrature and brute force.
 
 use angioray::scene::{
-    Knot, Light, Phong, Reflectance, Reflection, Rgb, Shininess, TransferFunction,
+    Intensity, Knot, Light, Phong, Picture, Reflectance, Reflection, Rgb, ShadedFrom, Shininess,
+    SrgbColor, TransferFunction,
 };
 use angioray::volume::{Geometry, Volume};
 use glam::DVec3;
@@ -191,11 +192,14 @@ fn a_colour_ramp_agrees_with_fine_quadrature() {
     assert!(worst(seen, [expected[1], expected[0], expected[2], expected[3]]) > 1e-9);
 }
 
+/// How a point's colour is lit: of its place in world space, the gradient there, and the direction toward the viewer.
+type Shade<'a> = &'a dyn Fn([f64; 3], DVec3, DVec3, DVec3) -> [f64; 3];
+
 /// The contract's formulas by the midpoint rule, point by point, from the test's own field.
 fn brute_force(
     volume: &Volume,
     tf: &TransferFunction,
-    shade: Option<(&Phong, DVec3)>,
+    shade: Option<Shade>,
     (eye, toward): (DVec3, DVec3),
     steps: u32,
 ) -> [f64; 4] {
@@ -205,17 +209,15 @@ fn brute_force(
     let mut color = [0.0; 3];
     let mut depth = 0.0_f64;
     for i in 0..steps {
-        let p = eye + dir * (enter + h * (f64::from(i) + 0.5));
-        let p = volume.geometry().index_from_world().transform_point3(p);
+        let at = eye + dir * (enter + h * (f64::from(i) + 0.5));
+        let p = volume.geometry().index_from_world().transform_point3(at);
         let p = p.clamp(DVec3::ZERO, last(volume));
         let (c, opacity) = tf.at(phi(volume, p));
         let kappa = -(1.0 - opacity.min(0.999_999)).ln() / tf.unit_length_mm();
         let seen = kappa * h * (-(depth + kappa * h / 2.0)).exp();
         depth += kappa * h;
         let c = match shade {
-            Some((phong, light)) => {
-                phong_by_the_book(phong, c.0, normal(volume, p, -dir), -dir, light)
-            }
+            Some(shade) => shade(c.0, at, gradient(volume, p), -dir),
             None => c.0,
         };
         for k in 0..3 {
@@ -240,6 +242,14 @@ fn phong_by_the_book(phong: &Phong, c: [f64; 3], n: DVec3, v: DVec3, l: DVec3) -
     c.map(|c| {
         c * (phong.ambient.get() + phong.diffuse.get() * nl.max(0.0)) + phong.specular.get() * s
     })
+}
+
+/// White light from one direction.
+fn lit_from<'a>(
+    phong: &'a Phong,
+    light: DVec3,
+) -> impl Fn([f64; 3], DVec3, DVec3, DVec3) -> [f64; 3] + 'a {
+    move |c, _, gradient, v| phong_by_the_book(phong, c, normal(gradient, v), v, light)
 }
 
 fn bumpy() -> TransferFunction {
@@ -290,13 +300,14 @@ fn shaded_emission_agrees_with_brute_force() {
         let mut scene = scene(dvr(bumpy(), Some(phong)));
         let mut light = -(ray.1 - ray.0).normalize();
         if case >= 4 {
-            scene.light = Light::distant(distant).unwrap();
+            scene.lights = vec![Light::distant(distant).unwrap()];
             light = distant;
         }
         let exact = cast_scene(&noise, &scene, ray.0, ray.1).color;
         let error = |steps: u32| {
+            let shade = lit_from(&phong, light);
             worst(
-                brute_force(&noise, &bumpy(), Some((&phong, light)), ray, steps),
+                brute_force(&noise, &bumpy(), Some(&shade), ray, steps),
                 exact,
             )
         };
@@ -306,6 +317,75 @@ fn shaded_emission_agrees_with_brute_force() {
         let unlit = cast(&noise, dvr(bumpy(), None), ray.0, ray.1).color;
         assert!(worst(unlit, exact) > 1e-3);
     }
+}
+
+/// A point among the voxels and a distant light, of two colours, on a material with colours, where gradients of less
+/// than `from` are shaded in part.
+#[test]
+fn several_lights_and_small_gradients_agree_with_brute_force() {
+    let mut random = Random(12);
+    let distant = DVec3::new(0.3, -0.8, 0.5).normalize();
+    let (warm, cold, tint) = ([1.0, 0.5, 0.25], [0.0, 0.5, 2.0], [1.0, 0.25, 0.5]);
+    for case in 0..8 {
+        let noise = random.noise(5, oblique(case % 2 == 0), 10.0);
+        let phong = Phong {
+            shininess: Shininess::new(12.0).unwrap(),
+            diffuse_color: Rgb(tint),
+            ..Phong::default()
+        };
+        let ray = random_ray(&mut random, &noise);
+        let inside = random.point(DVec3::ZERO, last(&noise));
+        let point = noise.geometry().world_from_index().transform_point3(inside);
+        let from = [0.0, 3.0][case / 4];
+        let shade = |c: [f64; 3], at: DVec3, gradient: DVec3, v: DVec3| {
+            let n = normal(gradient, v);
+            let white = |l: DVec3, c| phong_by_the_book(&phong, c, n, v, l);
+            let tinted = std::array::from_fn(|k| c[k] * tint[k]);
+            let unlit: [f64; 3] = tinted.map(|c| c * phong.ambient.get());
+            let (near, far) = (
+                white((point - at).normalize(), tinted),
+                white(distant, tinted),
+            );
+            let share = if from > 0.0 {
+                (gradient.length() / from).min(1.0)
+            } else {
+                1.0
+            };
+            std::array::from_fn(|k| {
+                let light = warm[k] * (near[k] - unlit[k]) + cold[k] * (far[k] - unlit[k]);
+                let shaded = c[k] * phong.ambient.get() + light;
+                share * shaded + (1.0 - share) * c[k]
+            })
+        };
+        let mut scene = scene(dvr(bumpy(), Some(phong)));
+        let light = |light: Light, [r, g, b]: [f64; 3], intensity: f64| Light {
+            color: linear_color([r / intensity, g / intensity, b / intensity]),
+            intensity: Intensity::new(intensity).unwrap(),
+            ..light
+        };
+        scene.lights = vec![
+            light(Light::point(point).unwrap(), warm, 1.0),
+            light(Light::distant(distant).unwrap(), cold, 2.0),
+        ];
+        if let Picture::Emission(medium) = &mut scene.picture {
+            medium.shaded_from = ShadedFrom::new(from).unwrap();
+        }
+        let exact = cast_scene(&noise, &scene, ray.0, ray.1).color;
+        let off = worst(
+            brute_force(&noise, &bumpy(), Some(&shade), ray, 30_000),
+            exact,
+        );
+        assert!(off < 3e-5, "{case}: {off}");
+        // The control: white lights, and all shaded.
+        let one = lit_from(&phong, distant);
+        assert!(worst(brute_force(&noise, &bumpy(), Some(&one), ray, 3000), exact) > 1e-3);
+    }
+}
+
+/// An sRGB colour whose linear light is near these channels.
+fn linear_color(linear: [f64; 3]) -> SrgbColor {
+    let [r, g, b] = Rgb(linear).to_srgb();
+    format!("{r},{g},{b}").parse().unwrap()
 }
 
 #[test]
@@ -355,7 +435,8 @@ fn sharp_highlights_between_the_nodes_are_found() {
         let scene = scene(dvr(bumpy(), Some(phong)));
         let exact = cast_scene(&noise, &scene, ray.0, ray.1).color;
         let light = -(ray.1 - ray.0).normalize();
-        let brute = |steps: u32| brute_force(&noise, &bumpy(), Some((&phong, light)), ray, steps);
+        let shade = lit_from(&phong, light);
+        let brute = |steps: u32| brute_force(&noise, &bumpy(), Some(&shade), ray, steps);
         let off = worst(brute(10_000), exact);
         assert!(off < 1e-6, "{off}");
         assert!(worst(brute(100), exact) > 1e-6);

@@ -4,6 +4,9 @@ mod common;
 mod degenerate;
 mod emission;
 mod invariance;
+mod occlusion;
+#[path = "../common/occlusion.rs"]
+mod occlusion_cases;
 mod picture;
 mod projection;
 mod surface;

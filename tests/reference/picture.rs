@@ -108,7 +108,7 @@ fn the_same_bytes_whatever_the_number_of_threads() {
 /// The middle pixel of the ball's picture and its normal.
 fn lit_pixel(phong: Phong, light: Light) -> ([f64; 3], DVec3) {
     let mut scene = ball_scene(Some(phong));
-    scene.light = light;
+    scene.lights = vec![light];
     let frame = picture(&scene);
     let at = 13 * 50 + 28;
     let n = DVec3::from_array(frame.plane(NORMAL).unwrap()[at].map(f64::from));
@@ -128,7 +128,7 @@ fn phong_and_blinn_phong_as_their_authors_wrote_them() {
             ..Phong::default()
         };
         for (light, l) in [
-            (Light::Headlight, v),
+            (Light::HEADLIGHT, v),
             (Light::distant(side).unwrap(), side),
             (Light::distant(DVec3::Y).unwrap(), DVec3::Y),
         ] {

@@ -128,7 +128,7 @@ fn in_noise_nothing_changes_sign_before_the_hit() {
             assert!(off < 1e-12 && (hit.value - level).abs() < 1e-13);
             let p = eye + (toward - eye).normalize() * hit.depth_mm;
             let p = noise.geometry().index_from_world().transform_point3(p);
-            let n = normal(&noise, p, DVec3::ZERO);
+            let n = normal(gradient(&noise, p), DVec3::ZERO);
             assert!(hit.normal_world.distance(n) < 1e-8);
             hits += 1;
             // A hit reported later is caught.

@@ -99,8 +99,8 @@ fn scenes(volume: &Volume) -> Vec<Scene> {
     let perspective = Lens::Perspective { fov_deg: 30.0 };
     let distant = Light::distant(DVec3::new(0.0, -0.6, 0.8)).unwrap();
     let views = [
-        (perspective, Light::Headlight),
-        (Lens::Orthographic { height_mm: 20.0 }, Light::Headlight),
+        (perspective, Light::HEADLIGHT),
+        (Lens::Orthographic { height_mm: 20.0 }, Light::HEADLIGHT),
         (perspective, distant),
     ];
     let (center, _) = volume.bounding_sphere();
@@ -109,7 +109,7 @@ fn scenes(volume: &Volume) -> Vec<Scene> {
         views.map(|(lens, light)| Scene {
             size: ImageSize::new(160, 120).unwrap(),
             camera: Camera::look_at(eye, center, DVec3::new(0.2, 0.1, 1.0), lens).unwrap(),
-            light,
+            lights: vec![light],
             ..common::scene(volume, 8, picture.clone())
         })
     });
@@ -152,7 +152,7 @@ fn a_real_peer_draws_what_the_reference_draws() {
                 "{} {:?} {:?} {setting}: rmse {off:.4}, moved {off_moved:.4}, {depth:?} {:?}",
                 scene.picture.mode(),
                 scene.camera.lens(),
-                scene.light,
+                scene.lights,
                 ready.note,
             );
             eprintln!("{what}");

@@ -13,7 +13,7 @@ use angioray::scene::{
     Camera, Emission, Knot, Lens, Light, Phong, Picture, Rgb, TransferFunction, srgb_from_linear,
 };
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use fake_peer::{
     Fake, INFINITE, LOAD, ONE, READY, maximum, picture_of, prepared, renders, scene_of, two_pixels,
@@ -122,7 +122,11 @@ fn a_scene_is_sent_in_stored_values_and_linear_light() {
     let mut emission = Emission::of(TransferFunction::new(knots, 3.0).unwrap());
     emission.phong = Some(Phong::default());
     let mut scene = scene_of(&volume, Picture::Emission(emission));
-    scene.light = Light::distant(DVec3::X).unwrap();
+    scene.lights = vec![
+        Light::distant(DVec3::X).unwrap(),
+        "point:1,2,3@lime@0.5".parse().unwrap(),
+        Light::HEADLIGHT,
+    ];
     let lens = Lens::Orthographic { height_mm: 30.0 };
     scene.camera = Camera::look_at(DVec3::NEG_Y * 9.0, DVec3::ZERO, DVec3::Z, lens).unwrap();
     for scene in [scene_of(&volume, maximum()), scene] {
@@ -132,7 +136,10 @@ fn a_scene_is_sent_in_stored_values_and_linear_light() {
     let heard = fake.heard();
     assert_eq!(heard[1]["scene"]["mode"], "mip");
     assert_eq!(heard[1]["scene"]["window"], json!([0.0, 60.0]));
-    assert_eq!(heard[1]["scene"]["toward_light"], Value::Null);
+    assert_eq!(
+        heard[1]["scene"]["lights"],
+        json!([{"color": [1.0, 1.0, 1.0]}])
+    );
     assert_eq!(heard[1]["scene"]["camera"]["fov_deg"], 30.0);
     let expected = json!({
         "id": 1,
@@ -153,11 +160,19 @@ fn a_scene_is_sent_in_stored_values_and_linear_light() {
         "phong": {
             "reflection": "phong",
             "ambient": 0.1,
+            "ambient_color": [1.0, 1.0, 1.0],
             "diffuse": 0.9,
+            "diffuse_color": [1.0, 1.0, 1.0],
             "specular": 0.2,
+            "specular_color": [1.0, 1.0, 1.0],
             "shininess": 32.0,
         },
-        "toward_light": [1.0, 0.0, 0.0],
+        "shaded_from": 0.0,
+        "lights": [
+            {"color": [1.0, 1.0, 1.0], "toward": [1.0, 0.0, 0.0]},
+            {"color": [0.0, 0.5, 0.0], "at": [1.0, 2.0, 3.0]},
+            {"color": [1.0, 1.0, 1.0]},
+        ],
         "clip_planes": [],
     });
     assert_eq!(heard[2]["scene"], expected);

@@ -3,7 +3,7 @@
 use angioray::extent::{ImageSize, Range};
 use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferChoice};
 use angioray::scene::{
-    Gradient, Lens, Picture, Precomputed, Projection, Reconstruction, SamplingMethod,
+    Gradient, Lens, Light, Picture, Precomputed, Projection, Reconstruction, SamplingMethod,
 };
 use angioray::{Sphere, Subject};
 use clap::Parser;
@@ -163,7 +163,7 @@ fn defaults_are_made_for_the_robust_range() {
 
 /// Scenes of every kind, far from the defaults.
 #[rustfmt::skip]
-const SCENES: [&[&str]; 11] = [
+const SCENES: [&[&str]; 13] = [
     &["head.nrrd"],
     &[
         "a/b,c.nrrd", "--iso", "33.333333333333336", "--caps", "off", "--refine", "newton:7",
@@ -185,6 +185,10 @@ const SCENES: [&[&str]; 11] = [
     &["--clip-plane", "0.1,-2,3e-7,1e300", "--clip-plane", "-1,0,0,0.30000000000000004"],
     &["--mode", "dvr"],
     &["--mode", "dvr", "--tf", "cta", "--shading", "phong", "--termination", "0.95"],
+    &["--light", "headlight@0.5", "--light", "point:1,-2,0.30000000000000004@#ffd0a0", "--light",
+        "camera:-1,1,1@tomato@2", "--light", "0,0,1", "--ambient-color", "navy"],
+    &["--mode", "dvr", "--shading", "blinn-phong", "--shade-from", "12.5%", "--light",
+        "camera:0,0,1", "--diffuse-color", "0.3,0.2,1", "--specular-color", "#abc"],
 ];
 
 #[test]
@@ -363,6 +367,11 @@ fn nonsense_is_refused_with_a_reason() {
             "only a surface has a hit at which to change the filter",
         ),
         ("sampling = 'exact'\nrecon = 'adaptive'", "takes no samples"),
+        ("sampling = 'exact'\njitter = 'hash:1'", "need none"),
+        (
+            "mode = 'dvr'\nquad = 'adaptive'\njitter = 'interleaved:4'",
+            "need none",
+        ),
         (
             "recon = 'adaptive'\nfilter = 'nearest'",
             "of which every sample already is",
@@ -381,10 +390,41 @@ fn nonsense_is_refused_with_a_reason() {
         "mode = 'lmip'\nlmip-threshold = 4",
         "mode = 'dvr'\nshading = 'phong'\nlight = 'headlight'",
         "sampling = 'fixed'\nrecon = 'adaptive'\nprobe = 'off'",
+        "sampling = 'exact'\njitter = 'none'",
+        "mode = 'dvr'\nquad = 'simpson'\njitter = 'interleaved:4'",
         "recon = 'full'\nfilter = 'nearest'\nprobe = 'on'",
         "carm = 'LAO 10'\nview = 'anterior'",
         "eye = [1, 2, 3]\nzoom = 2\nroll = 10\nazimuth = 5",
         "eye = [0, 1e12, 0]",
+    ] {
+        assert!(file(text).checked().is_ok(), "{text}");
+    }
+}
+
+#[test]
+fn light_that_means_nothing_is_refused_with_a_reason() {
+    for (text, reason) in [
+        ("mode = 'dvr'\nspecular-color = 'red'", "without shading"),
+        ("mode = 'mip'\nambient-color = 'red'", "no surface to light"),
+        ("shade-from = 3", "only a medium has points"),
+        ("mode = 'dvr'\nshade-from = 3", "without shading"),
+        (
+            "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight', 'point:1,2,3']",
+            "5 lights: there may be at most 4",
+        ),
+        (
+            "mode = 'dvr'\nshading = 'phong'\nshade-from = 3\ngradient = 'precomputed'",
+            "of which only the direction is stored",
+        ),
+    ] {
+        let message = refusal(text);
+        assert!(message.contains(reason), "{text}: {message}");
+    }
+    // The controls: the same keys where they mean something.
+    for text in [
+        "mode = 'dvr'\nshading = 'phong'\nshade-from = 3",
+        "mode = 'dvr'\nshading = 'phong'\nshade-from = 0\ngradient = 'precomputed'",
+        "light = ['1,0,0', '0,1,0', '0,0,1', 'headlight']",
     ] {
         assert!(file(text).checked().is_ok(), "{text}");
     }
@@ -431,6 +471,18 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
         ("smooth", "0", ["-1", "nan", "1e9"]),
         ("azimuth", "-360", ["nan", "inf", "1e9"]),
         ("light", "0,-1,0", ["0,0,0", "1,2", "lamp"]),
+        (
+            "light",
+            "point:0,0,0@red@0",
+            ["camera:0,0,0", "point:1,2,inf", "headlight@-1"],
+        ),
+        (
+            "light",
+            "camera:1,2,3@2",
+            ["headlight@", "headlight@2@red", "sun:1,2,3"],
+        ),
+        ("specular-color", "white", ["2,0,0", "nocolour", "1"]),
+        ("shade-from", "20%", ["101%", "-1", "p5"]),
         ("raw-spacing", "0.5", ["0", "1,2", "-1,1,1"]),
         ("color", "#A0b1c2", ["#12345", "1,1", "#gggggg"]),
         ("size", "640x480", ["0", "4x", "70000x70000"]),
@@ -449,6 +501,53 @@ fn every_number_with_a_domain_refuses_what_is_outside() {
             assert!(!accepted(value), "{flag} {value}");
         }
     }
+}
+
+#[test]
+fn lights_come_as_one_list_from_the_flags_or_from_the_file() {
+    let two = "light = ['point:1,2,3@0.5', 'camera:0,1,1@#f00']";
+    let of_file = resolved(&file(two)).scene.lights;
+    let as_flags = ["--light", "point:1,2,3@0.5", "--light", "camera:0,1,1@#f00"];
+    assert_eq!(of_file, resolved(&flags(&as_flags)).scene.lights);
+    assert_eq!(of_file.len(), 2);
+    // Flags win over the file as a whole.
+    let over = flags(&["--light", "headlight"]).over(file(two));
+    assert_eq!(resolved(&over).scene.lights, [Light::HEADLIGHT]);
+    assert_eq!(resolved(&file("")).scene.lights, [Light::HEADLIGHT]);
+    // A light alone is stored as it always was.
+    let stored = |text: &str| resolved(&file(text)).options.to_toml().unwrap();
+    assert!(stored("light = '1,-2,0.5'").contains("light = [1, -2, 0.5]\n"));
+    assert!(stored("").contains("light = \"headlight\"\n"));
+}
+
+#[test]
+fn a_share_to_shade_from_is_one_of_the_range_in_a_voxel() {
+    let shaded_from = |text: &str| {
+        let text = format!("mode = 'dvr'\nshading = 'phong'\n{text}");
+        match resolved(&file(&text)).scene.picture {
+            Picture::Emission(medium) => medium.shaded_from.get(),
+            _ => f64::NAN,
+        }
+    };
+    let spacing_mm = SUBJECT.spacing_mm.min_element();
+    let expected = 0.1 * SUBJECT.range.width() / spacing_mm;
+    assert!((shaded_from("shade-from = '10%'") - expected).abs() < 1e-9 * expected);
+    assert_eq!(shaded_from("shade-from = 7.5"), 7.5);
+    assert_eq!(shaded_from(""), 0.0);
+}
+
+#[test]
+fn what_a_gradient_lacks_gives_way_to_a_flag() {
+    let text = "mode = 'dvr'\nshading = 'phong'\n";
+    let weighed = flags(&["--shade-from", "3"]);
+    let weighed = weighed.over(file(&format!("{text}gradient = 'precomputed'")));
+    assert!(weighed.picture.gradient.is_none());
+    let stored = flags(&["--gradient", "precomputed"]);
+    let stored = stored.over(file(&format!("{text}shade-from = 3")));
+    assert!(stored.picture.shade_from.is_none());
+    // The control: another gradient goes with it.
+    let forward = flags(&["--gradient", "forward"]).over(file(&format!("{text}shade-from = 3")));
+    assert!(forward.picture.shade_from.is_some());
 }
 
 #[test]

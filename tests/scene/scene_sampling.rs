@@ -2,7 +2,7 @@
 
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
-use angioray::scene::{Emission, Picture, QuadratureMethod, SamplingMethod};
+use angioray::scene::{Emission, Jitter, Picture, QuadratureMethod, SamplingMethod};
 use angioray::{Sphere, Subject};
 use glam::DVec3;
 
@@ -56,6 +56,7 @@ fn sampling_is_exact_unless_steps_are_wanted() {
         "sampling = 'fixed'",
         "step = 0.25",
         "refine = 'newton'",
+        "jitter = 'hash:1'",
         "mode = 'mip'\nprobe = 'off'",
     ] {
         assert_eq!(method(fixed), SamplingMethod::Fixed, "{fixed}");
@@ -124,6 +125,9 @@ fn what_is_resolved_reads_back_as_the_same_scene() {
     for text in [
         "",
         "step = 0.25",
+        "jitter = 'hash:1'",
+        "mode = 'mean'\njitter = 'interleaved:16:3'",
+        "mode = 'dvr'\njitter = 'shift:0.1'",
         "mode = 'dvr'",
         "mode = 'dvr'\nquad = 'adaptive:1e-4'",
         "mode = 'mean'\nsampling = 'fixed'",
@@ -157,4 +161,53 @@ fn a_stored_scene_in_another_mode_is_sampled_as_that_mode_is() {
     let of_leaves = stored("mode = 'dvr'\nhomogeneity = 0.1");
     let exact = options("sampling = 'exact'").over(options(&of_leaves));
     assert_eq!(quadrature(&exact), QuadratureMethod::Adaptive);
+}
+
+#[test]
+fn jitter_is_stored_with_its_frame_and_gives_way_to_sampling_without_steps() {
+    let stored = |text: &str| resolved(&options(text)).options.to_toml().unwrap();
+    for (text, written) in [
+        ("jitter = 'hash:7'", "jitter = \"hash:7:0\""),
+        (
+            "mode = 'dvr'\njitter = 'interleaved:4:9'",
+            "jitter = \"interleaved:4:9\"",
+        ),
+        ("sampling = 'fixed'", "jitter = \"none\""),
+    ] {
+        assert!(stored(text).contains(written), "{}", stored(text));
+    }
+    assert!(!stored("sampling = 'exact'").contains("jitter"));
+    // A film's frames, from a number on.
+    let first = resolved(&options("jitter = 'hash:7:2'"));
+    let later = first.frames_later(5);
+    let jitter = Jitter::Hash { seed: 7, frame: 7 };
+    assert_eq!(later.scene.sampling.jitter, jitter);
+    assert_eq!(later.options.sampling.jitter, Some(jitter));
+    assert_eq!(first.frames_later(0), first);
+    // Flags over what is stored.
+    let over = |flag: &str, file: &str| {
+        let all = options(flag).over(options(&stored(file)));
+        resolved(&all).scene.sampling.jitter
+    };
+    let dvr = "mode = 'dvr'\njitter = 'hash:7'";
+    for (flag, file) in [
+        ("sampling = 'exact'", "jitter = 'hash:7'"),
+        ("screen-error = 0.1", "jitter = 'hash:7'"),
+        ("quad = 'adaptive'", dvr),
+        ("sampling = 'exact'", dvr),
+        ("mode = 'mip'", dvr),
+        ("jitter = 'none'", dvr),
+    ] {
+        assert_eq!(over(flag, file), Jitter::None, "{flag} {file}");
+    }
+    let kept = Jitter::Hash { seed: 7, frame: 0 };
+    for (flag, file) in [
+        ("mode = 'mip'", "jitter = 'hash:7'"),
+        ("step = 2", dvr),
+        ("jitter = 'hash:7'", ""),
+        ("jitter = 'hash:7'", "mode = 'dvr'\nquad = 'adaptive'"),
+        ("jitter = 'hash:7'", "screen-error = 0.1"),
+    ] {
+        assert_eq!(over(flag, file), kept, "{flag} {file}");
+    }
 }

@@ -27,8 +27,9 @@ impl Frames {
         &self.first
     }
 
-    /// A frame: what rendering with its eye and up would make.
+    /// A frame: what rendering with its eye, its up and its jitter would make.
     pub fn at(&self, frame: u32) -> Resolved {
-        self.first.seen_by(self.orbit.camera(frame))
+        let seen = self.first.seen_by(self.orbit.camera(frame));
+        seen.frames_later(frame)
     }
 }

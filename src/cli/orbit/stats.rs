@@ -44,6 +44,8 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
             passes: passes_of_all(written),
             rays_per_round: Vec::new(),
             sample_check: None,
+            focus_mm: None,
+            sampling_check: None,
             counts: written.iter().filter_map(|w| w.about.counts).sum(),
             memory: Memory::now(
                 max_device_bytes.unwrap_or(0),

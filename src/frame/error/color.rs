@@ -47,6 +47,19 @@ pub fn color_error(reference: &Frame, frame: &Frame) -> Result<ColorError> {
     })
 }
 
+/// The share of the pixels of which a channel of the display planes differs by more than `level`.
+///
+/// # Errors
+/// As [`color_error`].
+pub fn differing_share(reference: &Frame, frame: &Frame, level: f64) -> Result<f64> {
+    let (left, right) = displays(reference, frame)?;
+    let differs = |(a, b): &(&[f32; 4], &[f32; 4])| {
+        (0..3).any(|c| (f64::from(a[c]) - f64::from(b[c])).abs() > level)
+    };
+    let count = left.iter().zip(right).filter(differs).count();
+    Ok(count as f64 / left.len().max(1) as f64)
+}
+
 /// The mean of the three channels' differences: how much brighter the picture is.
 pub(super) fn color_entries(reference: &Frame, frame: &Frame) -> Result<Vec<Entry>> {
     let (left, right) = displays(reference, frame)?;

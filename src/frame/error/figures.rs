@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::frame::{Frame, Layer};
 
 use super::{
-    ColorError, DepthError, NormalError, ValueError, color_error, depth_error, flip, normal_error,
-    ssim, value_error,
+    ColorError, DepthError, NormalError, OcclusionError, ValueError, color_error, depth_error,
+    flip, normal_error, occlusion_error, ssim, value_error,
 };
 
 /// The units that depths and values are measured in.
@@ -34,6 +34,8 @@ pub struct Figures {
     pub normal: Option<NormalError>,
     /// `None` also where all values of the volume are equal: no share of their range can be said.
     pub value: Option<ValueError>,
+    /// The error of what the surface keeps from its hits.
+    pub occlusion: Option<OcclusionError>,
 }
 
 /// Compares all planes that both pictures have. Which planes make sense for a picture is the
@@ -46,6 +48,7 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
     let both_have = |layer| reference.layers.has(layer) && frame.layers.has(layer);
     let deep = both_have(Layer::Depth);
     let oriented = both_have(Layer::Normal);
+    let occluded = both_have(Layer::Occlusion);
     let valued = both_have(Layer::Value) && scale.range_width != 0.0;
     Ok(Figures {
         color: shown.then(|| color_error(reference, frame)).transpose()?,
@@ -59,6 +62,9 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
             .transpose()?,
         value: valued
             .then(|| value_error(reference, frame, scale.range_width))
+            .transpose()?,
+        occlusion: occluded
+            .then(|| occlusion_error(reference, frame))
             .transpose()?,
     })
 }

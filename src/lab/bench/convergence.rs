@@ -197,7 +197,9 @@ pub fn through(volume: &Volume, point: DVec3, toward: DVec3, emission: Emission)
         sampling: Default::default(),
         anti_aliasing: Default::default(),
         sparse: None,
-        light: Default::default(),
+        lights: vec![Default::default()],
+        ambient_occlusion: None,
+        depth_of_field: None,
         gradient: Default::default(),
         tone: Default::default(),
     })

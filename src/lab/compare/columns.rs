@@ -126,6 +126,11 @@ const ALL: &[Column] = &[
         |row| row.error.and_then(|e| e.value?.p99).into(),
     ),
     VALUE_MAX,
+    OCCLUSION_MEAN,
+    ("occlusion_p99", "occlusion p99", Shown::Fixed(4), |row| {
+        row.error.and_then(|e| e.occlusion?.p99).into()
+    }),
+    OCCLUSION_BIAS,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -209,6 +214,13 @@ const VALUE_MAX: Column = (
     Shown::Percent(4),
     |row| row.error.and_then(|e| e.value?.max).into(),
 );
+const OCCLUSION_MEAN: Column = ("occlusion_mean", "occlusion mean", Shown::Fixed(4), |row| {
+    row.error.and_then(|e| e.occlusion?.mean).into()
+});
+/// Above 0 where the picture is too dark.
+const OCCLUSION_BIAS: Column = ("occlusion_bias", "occlusion bias", Shown::Fixed(4), |row| {
+    row.error.and_then(|e| e.occlusion?.bias).into()
+});
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
 });
@@ -224,6 +236,15 @@ const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into
 
 /// The columns for surfaces, which show their hits; for projections, their values.
 const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
+/// The same where light from everywhere is occluded.
+const OF_OCCLUDED: &[Column] = &[
+    WRONG_HITS,
+    MISSED,
+    EXTRA,
+    DEPTH_P99,
+    OCCLUSION_MEAN,
+    OCCLUSION_BIAS,
+];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.
@@ -237,7 +258,11 @@ pub fn short_table(rows: &[Row]) -> Table {
     let projection = rows
         .iter()
         .any(|row| row.error.is_some_and(|error| error.value.is_some()));
+    let occluded = rows
+        .iter()
+        .any(|row| row.error.is_some_and(|error| error.occlusion.is_some()));
     let own: &[Column] = match (surface, projection) {
+        (true, _) if occluded => OF_OCCLUDED,
         (true, _) => OF_SURFACES,
         (_, true) => OF_PROJECTIONS,
         _ => &[],

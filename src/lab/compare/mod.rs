@@ -119,7 +119,7 @@ impl Comparison<'_> {
         let before = compared.rows.len();
         let seen = of_mode.resolved.options.clone();
         compared.scenes.insert(mode.to_string(), seen);
-        let wanted = evaluated_planes(&of_mode.resolved.scene.picture);
+        let wanted = evaluated_planes(&of_mode.resolved.scene);
         let reference = (self.reference).frame(&of_mode.resolved.scene, wanted, self.progress)?;
         let mut pictures = vec![self.write_reference(&of_mode, &reference.frame)?];
         let mut maps = Vec::new();

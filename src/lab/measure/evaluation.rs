@@ -13,17 +13,18 @@ use crate::volume::Volume;
 use super::Counts;
 use super::processor::processor_ms;
 
-/// The planes in which a picture of this kind can be wrong, and the counters.
+/// The planes in which a scene's picture can be wrong, and the counters.
 ///
 /// A surface's values are all the iso value, and a maximum's depth hangs on rounding where the field is
 /// flat: neither is compared.
-pub fn evaluated_planes(picture: &Picture) -> Wanted {
-    let surface = matches!(picture, Picture::Surface { .. });
-    let projection = matches!(picture, Picture::Projection { .. });
+pub fn evaluated_planes(scene: &Scene) -> Wanted {
+    let surface = matches!(scene.picture, Picture::Surface { .. });
+    let projection = matches!(scene.picture, Picture::Projection { .. });
     Wanted::DISPLAY
         .with_if(surface, Layer::Depth)
         .with_if(surface, Layer::Normal)
         .with_if(projection, Layer::Value)
+        .with_if(scene.ambient_occlusion.is_some(), Layer::Occlusion)
         .with(Layer::COUNTERS)
         .with([Layer::Kind])
 }
@@ -56,7 +57,7 @@ pub fn evaluate(
     reference: &Frame,
     scale: Scale,
 ) -> Result<Evaluation> {
-    let rendering = renderer.render(scene, evaluated_planes(&scene.picture))?;
+    let rendering = renderer.render(scene, evaluated_planes(scene))?;
     Ok(Evaluation {
         figures: figures(reference, &rendering.frame, scale)?,
         counts: Counts::of(

@@ -1,6 +1,7 @@
 //! One setting in one scene, measured: its error against the reference, its time beside that of
 //! others; and another program, measured as a setting is.
 
+mod banding;
 mod borderline;
 mod counts;
 mod evaluation;
@@ -14,8 +15,10 @@ mod processor;
 mod program;
 mod ranking;
 mod reference_cache;
+mod sampling_check;
 mod settings;
 
+pub use banding::Banding;
 pub use borderline::{Borderline, Closeness, excuse_dips};
 pub use counts::Counts;
 pub use evaluation::{
@@ -30,4 +33,5 @@ pub use peer::{Peer, PeerFrame, PeerScene, PeerTime, Readiness};
 pub use program::{hash_kernels, hash_program};
 pub use ranking::RankingMetric;
 pub use reference_cache::{ReferenceCache, ReferenceFrame};
+pub use sampling_check::SamplingCheck;
 pub use settings::{built_in, grid};

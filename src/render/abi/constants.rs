@@ -2,8 +2,8 @@
 
 use crate::frame::{Certificate, Kind};
 use crate::scene::{
-    ClipPlane, Gradient, QuadratureMethod, RefineMethod, Reflection, Storage, TransferFunction,
-    Traverse,
+    ClipPlane, DepthOfField, Gradient, Light, LightFrom, QuadratureMethod, RefineMethod,
+    Reflection, Storage, TransferFunction, Traverse,
 };
 
 /// An enum that kernels know by numbers.
@@ -95,6 +95,14 @@ kernel_enum! {
         None => REFLECTION_NONE = 0,
         Some(Reflection::Phong) => REFLECTION_PHONG = 1,
         Some(Reflection::BlinnPhong) => REFLECTION_BLINN_PHONG = 2,
+    }
+}
+
+kernel_enum! {
+    LightFrom {
+        LightFrom::Eye => LIGHT_FROM_EYE = 0,
+        LightFrom::Direction(_) => LIGHT_FROM_DIRECTION = 1,
+        LightFrom::Point(_) => LIGHT_FROM_POINT = 2,
     }
 }
 
@@ -204,6 +212,9 @@ pub const LISTED_SQUARE: u32 = 16;
 /// Of so many pixels with one ray, beside others with many, one is checked with many.
 pub const CHECKED_OF: u32 = 256;
 
+/// How many sets of directions there are in which rays leave points of a surface: each pixel of a square has its own.
+pub const HEMISPHERES: u32 = 64;
+
 /// The mark of a pixel that was cast.
 pub const MARK_CAST: u32 = 1;
 
@@ -220,10 +231,13 @@ const NUMBERS: &[(&str, u32)] = &[
     ("CLASS_BITS", CLASS_BITS),
     ("MAX_DISTANCE", MAX_DISTANCE),
     ("MAX_CLIP_PLANES", ClipPlane::MAX_COUNT as u32),
+    ("MAX_LIGHTS", Light::MAX_COUNT as u32),
     ("MAX_KNOTS", MAX_KNOTS),
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("LISTED_SQUARE", LISTED_SQUARE),
     ("CHECKED_OF", CHECKED_OF),
+    ("HEMISPHERES", HEMISPHERES),
+    ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),
@@ -247,6 +261,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         RefineMethod::CONSTANTS,
         Gradient::CONSTANTS,
         <Option<Reflection>>::CONSTANTS,
+        LightFrom::CONSTANTS,
         QuadratureMethod::CONSTANTS,
         Class::CONSTANTS,
         Rays::CONSTANTS,

@@ -1,11 +1,11 @@
 //! From the scene's data to the structs and units of kernels; the structs' layouts for the test.
 
-use crate::scene::{Light, Phong, Rgb, Sampling, Tone as SceneTone, Window};
+use crate::scene::{Jitter as SceneJitter, Rgb, Sampling, Tone as SceneTone, Window};
 use crate::volume::{Rescale, Volume};
 
-use super::constants::KernelEnum;
 use super::structs::{
-    EmissionCast, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone, VolumeGrid,
+    EmissionCast, Jitter, LightSource, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone,
+    VolumeGrid,
 };
 
 /// Name, size and field offsets, in bytes, of every struct that is shared with the kernels.
@@ -16,12 +16,15 @@ pub fn struct_layouts() -> Vec<(&'static str, Vec<u32>)> {
         ("SurfaceCast", SurfaceCast::layout()),
         ("ProjectionCast", ProjectionCast::layout()),
         ("EmissionCast", EmissionCast::layout()),
+        ("LightSource", LightSource::layout()),
+        ("Jitter", Jitter::layout()),
         ("Shading", Shading::layout()),
         ("Tone", Tone::layout()),
     ]
 }
 
-fn rgb0(color: Rgb) -> [f32; 4] {
+/// A colour as kernels have it, with 0 for what they do not read.
+pub(super) fn rgb0(color: Rgb) -> [f32; 4] {
     let [r, g, b] = color.0.map(|c| c as f32);
     [r, g, b, 0.0]
 }
@@ -29,6 +32,33 @@ fn rgb0(color: Rgb) -> [f32; 4] {
 /// The step in mm.
 pub fn step_mm(sampling: &Sampling, volume: &Volume) -> f64 {
     sampling.step.get() * volume.geometry().smallest_spacing_mm()
+}
+
+/// How the samples of rays are shifted; `None`: they are not.
+pub fn jitter(jitter: SceneJitter) -> Option<Jitter> {
+    let (_, parts) = jitter.shift(0, 0);
+    let offsets = |side, [along_x, along_y]: [u32; 2], start| Jitter {
+        parts,
+        hashed: 0,
+        side,
+        along_x,
+        along_y,
+        start,
+        pad_0: 0,
+        pad_1: 0,
+    };
+    match jitter {
+        SceneJitter::None => None,
+        SceneJitter::Shift(shift) => Some(offsets(1, [0, 0], shift.parts())),
+        SceneJitter::Interleaved(pattern) => {
+            let start = pattern.gained();
+            Some(offsets(pattern.side(), pattern.gains(), start))
+        }
+        SceneJitter::Hash { seed, frame } => Some(Jitter {
+            hashed: 1,
+            ..offsets(1, [0, 0], SceneJitter::hash_key(seed, frame))
+        }),
+    }
 }
 
 /// A physical value in the device's stored units; beyond single precision, its end.
@@ -73,30 +103,6 @@ impl StoredIso {
             value: stored(rescale, physical),
             error: 0.0,
         }
-    }
-}
-
-/// The light of a scene, and how a surface of this colour reflects it; `None`: it shows its colour.
-pub fn shading(color: Rgb, phong: Option<Phong>, light: Light) -> Shading {
-    let numbers = phong.unwrap_or_default();
-    let toward_light = match light {
-        Light::Headlight => [0.0, 0.0, 0.0, 1.0],
-        Light::Distant { toward_light } => {
-            let l = toward_light.unit();
-            [l.x as f32, l.y as f32, l.z as f32, 0.0]
-        }
-    };
-    Shading {
-        color: rgb0(color),
-        toward_light,
-        ambient: numbers.ambient.get() as f32,
-        diffuse: numbers.diffuse.get() as f32,
-        specular: numbers.specular.get() as f32,
-        shininess: numbers.shininess.get() as f32,
-        reflection: phong.map(|phong| phong.reflection).number(),
-        pad_0: 0,
-        pad_1: 0,
-        pad_2: 0,
     }
 }
 

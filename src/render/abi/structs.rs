@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::Element;
+use crate::scene::Light;
 
 /// Declares a struct that kernels have too: plain, of the name that OpenCL knows, without implicit padding.
 macro_rules! device_struct {
@@ -125,19 +126,54 @@ device_struct! {
 }
 
 device_struct! {
-    /// The light and how a surface reflects it.
-    Shading {
-        color: [f32; 4],
-        /// The unit direction toward the light in world space; w = 1: the light is at the eye.
-        toward_light: [f32; 4],
-        ambient: f32,
-        diffuse: f32,
-        specular: f32,
-        shininess: f32,
-        reflection: u32,
+    /// How the samples of rays are shifted.
+    Jitter {
+        /// The parts of a step in which shifts are counted.
+        parts: u32,
+        /// Whether a ray's parts are a hash; else they are one of `side` × `side` offsets.
+        hashed: u32,
+        side: u32,
+        along_x: u32,
+        along_y: u32,
+        /// The first ray's parts, or what goes into all hashes.
+        start: u32,
+        pad_0: u32,
+        pad_1: u32,
+    }
+}
+
+device_struct! {
+    /// A light: from where it shines, and what of it is reflected at most.
+    LightSource {
+        /// The unit vector toward a distant light, world space; a point's place, index space.
+        place: [f32; 4],
+        /// The factor of the base colour where the light is faced, linear light.
+        diffuse: [f32; 4],
+        /// The factor of the specular term, linear light.
+        specular: [f32; 4],
+        shines_from: u32,
         pad_0: u32,
         pad_1: u32,
         pad_2: u32,
+    }
+}
+
+device_struct! {
+    /// The lights and how a surface or a medium reflects them.
+    Shading {
+        color: [f32; 4],
+        /// The factor of the base colour that no light has a part in, linear light.
+        ambient: [f32; 4],
+        /// The rows of the map from index-space to world-space vectors, all to one scale.
+        world_row_x: [f32; 4],
+        world_row_y: [f32; 4],
+        world_row_z: [f32; 4],
+        lights: [LightSource; Light::MAX_COUNT],
+        light_count: u32,
+        shininess: f32,
+        reflection: u32,
+        /// The gradient from which a medium is shaded fully, in the units of `VolumeGrid`'s rows; 0: everywhere.
+        shaded_from: f32,
     }
 }
 

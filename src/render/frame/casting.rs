@@ -4,17 +4,26 @@ use crate::error::Result;
 use crate::render::passes::Run;
 
 use super::antialias::cast_antialiased;
+use super::lens::see_through_lens;
 use super::picture::schedule;
 use super::planes::Planes;
 use super::sparse::cast_sparsely;
 use super::view::View;
 
 /// Casts the scene's picture: every pixel once, or where the picture is a `whole` one as many rays as the scene
-/// asks for.
+/// asks for, and through its lens.
 ///
 /// # Errors
-/// As [`schedule`] and [`Run::cast`].
+/// As [`schedule`], [`Run::cast`] and [`see_through_lens`].
 pub fn cast_picture(run: &mut Run, view: &View, is_whole: bool) -> Result<Planes> {
+    let mut planes = cast_through_pinhole(run, view, is_whole)?;
+    if let Some(dof) = view.scene.depth_of_field.filter(|_| is_whole) {
+        see_through_lens(run, view, &mut planes, dof)?;
+    }
+    Ok(planes)
+}
+
+fn cast_through_pinhole(run: &mut Run, view: &View, is_whole: bool) -> Result<Planes> {
     let schedule = schedule(run, view)?;
     let aa = view.scene.anti_aliasing;
     if let Some(sparse) = view.scene.sparse.filter(|_| is_whole) {

@@ -3,14 +3,16 @@
 use crate::error::{Error, Result};
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{EmissionCast, KernelEnum, Shading, shading};
+use crate::render::abi::{EmissionCast, KernelEnum, Material, Shading, shading};
 use crate::render::occupancy::{Opacity, stand_ins};
 use crate::render::passes::{
-    Blocks, EmissionInputs, MediumBlocks, Run, Seen, SurfaceBlocks, adaptive_emission,
+    Blocks, EmissionInputs, MediumBlocks, Reflects, Run, Seen, SurfaceBlocks, adaptive_emission,
     cast_emission, mark_uncertain, mark_varying_light,
 };
 use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
-use crate::scene::{Emission, Phong, Quadrature, Rgb, ScreenError, TransferFunction, Traverse};
+use crate::scene::{
+    Emission, Gradient, Light, Quadrature, Rgb, ScreenError, TransferFunction, Traverse,
+};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -27,16 +29,14 @@ pub struct EmissionPasses<'a> {
     cast: EmissionCast,
     shading: Shading,
     is_shaded: bool,
-    /// What shading makes of a colour at least and at most: it times the first, and it times the second plus the
-    /// third.
-    reflects: [f64; 4],
+    reflects: Reflects,
 }
 
 impl<'a> EmissionPasses<'a> {
     /// The passes of a medium, whose transfer function is uploaded.
     ///
     /// # Errors
-    /// The device has no room; homogeneous nodes beside what excludes them.
+    /// The device has no room; homogeneous nodes, or a gradient to shade from, beside what excludes them.
     pub fn new(
         run: &Run,
         view: &'a View<'a>,
@@ -44,18 +44,24 @@ impl<'a> EmissionPasses<'a> {
         opacity: &Opacity,
     ) -> Result<Self> {
         check_homogeneity(emission)?;
+        check_gradient(emission, view.scene.gradient)?;
         let quadrature = emission.quadrature;
         let with_values = layers(view).contains(&Layer::Value);
         let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
         let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
         let node_average = node_average(run, view, emission)?;
+        let material = Material {
+            color: Rgb::BLACK,
+            phong: emission.phong,
+            shaded_from: emission.shaded_from,
+        };
         Ok(Self {
             view,
             quadrature,
             cast: emission_cast(view, emission, &transfer, node_average.is_some()),
-            shading: shading(Rgb::BLACK, emission.phong, view.scene.light),
+            shading: shading(&material, view.scene, view.volume),
             is_shaded: emission.phong.is_some(),
-            reflects: emission.phong.map_or([1.0, 1.0, 0.0, 0.0], reflects),
+            reflects: reflects(emission, &view.scene.lights),
             transfer,
             node_average,
         })
@@ -107,7 +113,7 @@ impl Schedule for EmissionPasses<'_> {
             blocks,
             max_error: error.get() as f32,
             unit_length_mm: self.cast.unit_length_mm,
-            reflects: self.reflects.map(|share| share as f32),
+            reflects: self.reflects,
         };
         mark_varying_light(run, self.view.inputs, &asked, marks)
     }
@@ -129,6 +135,16 @@ fn check_homogeneity(emission: &Emission) -> Result<()> {
     if emission.homogeneity.is_some() && refuses {
         return Err(Error::usage(
             "homogeneous nodes go with neither shading nor the adaptive quadrature",
+        ));
+    }
+    Ok(())
+}
+
+fn check_gradient(emission: &Emission, gradient: Gradient) -> Result<()> {
+    let is_direction = matches!(gradient, Gradient::Precomputed(_));
+    if emission.phong.is_some() && emission.shaded_from.get() > 0.0 && is_direction {
+        return Err(Error::usage(
+            "a gradient to shade from does not go with precomputed gradients, of which only the direction is stored",
         ));
     }
     Ok(())
@@ -173,7 +189,10 @@ fn emission_cast(
         ..
     } = *emission;
     // What a bound on premultiplied light leaves for opacity: all behind may be this bright.
-    let bound = quadrature.bound() / emission.phong.map_or(1.0, max_reflected).max(1.0);
+    let max_reflected = (emission.phong).map_or(1.0, |phong| {
+        phong.most_reflected(&view.scene.lights).of_white()
+    });
+    let bound = quadrature.bound() / max_reflected.max(1.0);
     let termination = 1.0 - emission.termination.get();
     let min_transmittance = if quadrature.is_stepped() {
         termination
@@ -211,14 +230,20 @@ fn traverse_through_leaves(view: &View) -> u32 {
     Some(traverse).number()
 }
 
-/// What shading makes of a colour at least and at most; where the field is flat it leaves it.
-fn reflects(phong: Phong) -> [f64; 4] {
-    let ambient = phong.ambient.get();
-    let most = ambient + phong.diffuse.get();
-    [ambient.min(1.0), most.max(1.0), phong.specular.get(), 0.0]
-}
-
-/// The most light that white reflects.
-fn max_reflected(phong: Phong) -> f64 {
-    phong.ambient.get() + phong.diffuse.get() + phong.specular.get()
+/// What shading makes of a medium's colour at least and at most; where the gradient is small it leaves it, wholly or in
+/// part.
+fn reflects(emission: &Emission, lights: &[Light]) -> Reflects {
+    let Some(phong) = emission.phong else {
+        return Reflects::UNSHADED;
+    };
+    let most = phong.most_reflected(lights);
+    let channels = |of: &dyn Fn(usize) -> f64| {
+        let [r, g, b] = std::array::from_fn(|c| of(c) as f32);
+        [r, g, b, 0.0]
+    };
+    Reflects {
+        least: channels(&|c| most.ambient[c].min(1.0)),
+        most: channels(&|c| (most.ambient[c] + most.diffuse[c]).max(1.0)),
+        added: channels(&|c| most.specular[c]),
+    }
 }

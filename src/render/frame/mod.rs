@@ -4,6 +4,7 @@
 mod antialias;
 mod casting;
 mod emission;
+mod lens;
 mod listing;
 mod picture;
 mod planes;

@@ -34,7 +34,7 @@ pub fn schedule<'a>(run: &Run, view: &'a View<'a>) -> Result<Box<dyn Schedule + 
                     color: *color,
                     phong: *phong,
                 };
-                Box::new(SurfacePasses::new(view, *iso, &seen))
+                Box::new(SurfacePasses::new(run, view, *iso, &seen)?)
             }
             (Picture::Projection { of, window }, Criterion::Floor(floor)) => {
                 Box::new(ProjectionPasses::new(view, *of, *window, *floor))

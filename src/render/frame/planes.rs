@@ -29,6 +29,8 @@ pub struct Planes {
     pub cast: Option<Buffer<u32>>,
     /// How much adaptive anti-aliasing may differ from the whole of it.
     pub check: Option<SampleCheck>,
+    /// How far away the focal plane of the lens is along the view axis, mm.
+    pub focus_mm: Option<f64>,
     /// The rays of each round.
     pub rays_per_round: Vec<u64>,
     /// Bytes of tables that only the passes needed.
@@ -51,6 +53,7 @@ impl Planes {
             coverage: None,
             cast: None,
             check: None,
+            focus_mm: None,
             rays_per_round: Vec::new(),
             other_bytes: 0,
         })

@@ -4,17 +4,17 @@
 use std::time::Instant;
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Wanted};
+use crate::frame::{Frame, Layer, Wanted};
 use crate::gpu::{Device, FrameTimes, PassTime, Timings};
 use crate::octree::Octree;
-use crate::render::abi::{Lanes, Variant, tone};
+use crate::render::abi::{Jitter, Lanes, Variant, jitter, tone};
 use crate::render::occupancy::{Criterion, OccupancyCache, OccupancyTables};
 use crate::render::passes::{CastInputs, Passes, Run, tone_curve};
 use crate::render::resources::{
     DeviceClip, DeviceDirections, DeviceGradient, DeviceVoxels, GradientFigures, HeldVolume,
     RaySource, needed_gradients,
 };
-use crate::scene::{SamplingMethod, Scene, Storage};
+use crate::scene::{Light, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
@@ -72,6 +72,8 @@ pub struct Rendering {
     pub rays_per_round: Vec<u64>,
     /// How much the picture may differ from one with as many rays in every pixel, where its anti-aliasing is adaptive.
     pub sample_check: Option<SampleCheck>,
+    /// How far away the focal plane of the lens is along the view axis, mm; `None`: a pinhole.
+    pub focus_mm: Option<f64>,
     /// The precomputed gradients, where the picture made use of them.
     pub gradients: Option<GradientFigures>,
     /// Bytes held on the device while rendering.
@@ -180,7 +182,7 @@ impl<'a> Renderer<'a> {
         wanted: Wanted,
         pixels: Option<&[u32]>,
     ) -> Result<Rendering> {
-        self.check_sampling(scene)?;
+        self.check_scene(scene)?;
         let listing_bytes = listing_bytes(scene);
         let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree) + listing_bytes;
         check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
@@ -216,13 +218,15 @@ impl<'a> Renderer<'a> {
             render_ms: device_ms,
             rays_per_round: planes.rays_per_round.clone(),
             sample_check: planes.check,
+            focus_mm: planes.focus_mm,
             gradients: (self.directions_for(scene, wanted)).map(|directions| directions.figures),
             device_bytes: held_bytes + self.occupancies.bytes() + planes.bytes(),
         })
     }
 
     /// Checks that the scene's samples can be counted and read.
-    fn check_sampling(&self, scene: &Scene) -> Result<()> {
+    fn check_scene(&self, scene: &Scene) -> Result<()> {
+        Light::check_count(&scene.lights)?;
         let method = scene.sampling_method();
         if method == SamplingMethod::Fixed {
             check_step(scene, self.volume)?;
@@ -299,13 +303,15 @@ impl<'a> Renderer<'a> {
         };
         let view = View {
             scene,
-            wanted,
+            // A lens is focused, and its circles of confusion found, by the depths.
+            wanted: wanted.with_if(scene.depth_of_field.is_some(), Layer::Depth),
             volume,
             octree,
             inputs: CastInputs {
                 volume: on_device,
                 occupancy,
                 clip: &clip,
+                jitter: jitter_of(scene),
             },
             gradient: DeviceGradient::of(scene.gradient, directions),
         };
@@ -320,6 +326,14 @@ impl<'a> Renderer<'a> {
             planes,
             classify_ms,
         })
+    }
+}
+
+/// How the samples of a scene's rays are shifted; where none are taken at fixed steps there is nothing to shift.
+fn jitter_of(scene: &Scene) -> Option<Jitter> {
+    match scene.sampling_method() {
+        SamplingMethod::Fixed => jitter(scene.sampling.jitter),
+        SamplingMethod::Exact => None,
     }
 }
 

@@ -128,7 +128,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (2 * 16 + 8 * 4);
+        let needs = 100 * (2 * 16 + 10 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

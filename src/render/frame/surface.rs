@@ -3,12 +3,17 @@
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{Filling, KernelEnum, Shading, StoredIso, SurfaceCast, shading};
-use crate::render::passes::{
-    Blocks, Run, Seen, SurfaceBlocks, cast_surface, exact_surface, interpolate_hits,
-    mark_uncertain, shade_surface, surface_normal,
+use crate::render::abi::{
+    Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
-use crate::scene::{Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError};
+use crate::render::passes::{
+    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, ambient_occlusion, cast_surface, exact_surface,
+    interpolate_hits, mark_uncertain, shade_surface, surface_normal,
+};
+use crate::render::resources::Hemispheres;
+use crate::scene::{
+    AmbientOcclusion, Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError, ShadedFrom,
+};
 
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -26,23 +31,49 @@ pub struct Surface {
     pub phong: Option<Phong>,
 }
 
-/// Casts, finds normals where they are needed, shades.
+/// Casts, finds normals and what is occluded where those are needed, shades.
 pub struct SurfacePasses<'a> {
     view: &'a View<'a>,
     cast: SurfaceCast,
     light: Shading,
     is_shaded: bool,
+    occlusion: Option<Occlusion>,
 }
+
+/// Ambient occlusion with what its pass reads.
+struct Occlusion {
+    asked: AmbientOcclusion,
+    hemispheres: Hemispheres,
+}
+
+/// How far from a surface the rays that leave it begin, in voxels of the smallest spacing: so far that single
+/// precision knows the side on which they are, unless they leave it within a few thousandths of its tangents.
+const START_VOXELS: f64 = 1e-3;
 
 impl<'a> SurfacePasses<'a> {
     /// The passes of a surface.
-    pub fn new(view: &'a View<'a>, iso: StoredIso, surface: &Surface) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn new(run: &Run, view: &'a View<'a>, iso: StoredIso, surface: &Surface) -> Result<Self> {
+        let material = Material {
+            color: surface.color,
+            phong: surface.phong,
+            shaded_from: ShadedFrom::default(),
+        };
+        let occlusion = |asked: AmbientOcclusion| {
+            Ok(Occlusion {
+                asked,
+                hemispheres: Hemispheres::upload(run.device, asked.rays.get())?,
+            })
+        };
+        Ok(Self {
             view,
             cast: surface_cast(view, iso, surface),
-            light: shading(surface.color, surface.phong, view.scene.light),
+            light: shading(&material, view.scene, view.volume),
             is_shaded: surface.phong.is_some(),
-        }
+            occlusion: view.scene.ambient_occlusion.map(occlusion).transpose()?,
+        })
     }
 
     /// The layers that the passes write: what is wanted, and what later passes read.
@@ -67,6 +98,9 @@ impl<'a> SurfacePasses<'a> {
         if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
             layers.push(Layer::Normal);
         }
+        if self.occlusion.is_some() {
+            layers.push(Layer::Occlusion);
+        }
         layers
     }
 }
@@ -75,6 +109,8 @@ impl Schedule for SurfacePasses<'_> {
     fn planes(&self, run: &Run) -> Result<Planes> {
         let mut planes = Planes::new(run, &self.layers())?;
         planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
+        let hemispheres = self.occlusion.as_ref();
+        planes.other_bytes += hemispheres.map_or(0, |occlusion| occlusion.hemispheres.bytes());
         Ok(planes)
     }
 
@@ -153,7 +189,7 @@ impl Schedule for SurfacePasses<'_> {
 }
 
 impl SurfacePasses<'_> {
-    /// Finds the normals of the rays' hits, where they are needed, and shades them.
+    /// Finds the normals of the rays' hits and what is occluded of them, where those are needed, and shades them.
     fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         let Planes {
             hit_mm: Some(hit_mm),
@@ -167,7 +203,23 @@ impl SurfacePasses<'_> {
         if layers.has(Layer::Normal) {
             surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)?;
         }
-        shade_surface(run, &self.light, self.is_shaded, layers, color)
+        if let Some(Occlusion { asked, hemispheres }) = &self.occlusion {
+            let volume = self.view.volume;
+            let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
+            let scale = covector_scale(volume);
+            let leaving = Leaving {
+                hemispheres,
+                t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
+            };
+            ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)?;
+        }
+        let lit = Lit {
+            shading: &self.light,
+            hit_mm: self.is_shaded.then_some(&*hit_mm),
+            occlusion: (self.occlusion.as_ref())
+                .map(|occlusion| occlusion.asked.strength.get() as f32),
+        };
+        shade_surface(run, lit, layers, color)
     }
 }
 

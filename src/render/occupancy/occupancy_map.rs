@@ -34,14 +34,16 @@ impl OccupancyTables {
         }
     }
 
-    /// What a scene asks for: its casts, and where pixels are left out or have many rays the tests of what they may show,
-    /// which do by cells whatever rays do, and of a medium by the light of leaves.
+    /// What a scene asks for: its casts, and what does by cells whatever those do: where pixels are left out or have many rays
+    /// the tests of what they may show, of a medium by the light of leaves too, and rays that leave a surface.
     pub fn of_scene(scene: &Scene) -> Self {
         let is_certified = |sparse: Sparse| sparse.refill == Refill::Certified;
         let certified = scene.sparse.is_some_and(is_certified);
         let of_casts = Self::of(&scene.sampling);
+        let by_cells =
+            certified || scene.anti_aliasing.is_adaptive() || scene.ambient_occlusion.is_some();
         Self {
-            with_cells: of_casts.with_cells || certified || scene.anti_aliasing.is_adaptive(),
+            with_cells: of_casts.with_cells || by_cells,
             with_light: certified,
             ..of_casts
         }

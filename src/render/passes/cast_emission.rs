@@ -17,8 +17,9 @@ pub fn cast_emission(
     color: &mut Buffer<[f32; 4]>,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
-    let defines = inputs
-        .defines(run, layers)
+    let defines = inputs.defines(run, layers);
+    let defines = (inputs.cast_inputs)
+        .define_steps(defines)
         .with("QUADRATURE", method.number())
         .with("HOMOGENEOUS", u32::from(inputs.node_average.is_some()));
     let args = inputs.args(run, color, layers);

@@ -18,20 +18,18 @@ pub fn cast_maximum(
     layers: &mut DeviceLayers,
 ) -> Result<()> {
     let has = |layer| u32::from(layers.has(layer));
-    let defines = run
-        .defines()
+    let defines = inputs
+        .define_steps(run.defines())
         .with("PROJECTION", which.number())
         .with("LAYERS", has(Layer::Depth))
         .with("COUNTERS", has(Layer::Steps));
-    let args = inputs
-        .along_rays(inputs.by_ranges(run), run, DeviceGradient::NONE)
-        .value("cast", cast)
-        .with(layers.writing(&[
-            Layer::Kind,
-            Layer::Value,
-            Layer::Depth,
-            Layer::Steps,
-            Layer::Nodes,
-        ]));
+    let args = inputs.along_rays(inputs.by_ranges(run), run, DeviceGradient::NONE);
+    let args = inputs.by_steps(args, cast).with(layers.writing(&[
+        Layer::Kind,
+        Layer::Value,
+        Layer::Depth,
+        Layer::Steps,
+        Layer::Nodes,
+    ]));
     run.cast("cast_maximum", defines, args)
 }

@@ -21,17 +21,17 @@ pub fn cast_surface(
     layers: &mut DeviceLayers,
 ) -> Result<()> {
     let has = |layer| u32::from(layers.has(layer));
-    let defines = run
-        .defines()
+    let defines = inputs
+        .define_steps(run.defines())
         .with("LAYERS", has(Layer::Depth))
         .with(
             "NEAREST_MARCH",
             u32::from(recon == Reconstruction::Adaptive),
         )
         .with("COUNTERS", has(Layer::Steps));
+    let args = inputs.along_rays(inputs.by_cells(run), run, DeviceGradient::NONE);
     let args = inputs
-        .along_rays(inputs.by_cells(run), run, DeviceGradient::NONE)
-        .value("cast", cast)
+        .by_steps(args, cast)
         .write("hit_mm", hit_mm)
         .with(layers.writing(&[
             Layer::Kind,

@@ -52,9 +52,9 @@ impl EmissionInputs<'_> {
     pub fn args(&self, run: &Run, color: &mut Buffer<[f32; 4]>, layers: &mut DeviceLayers) -> Args {
         let args = self.cast_inputs.by_cells(run).with(self.transfer);
         let args = args.read_some("node_average", self.node_average);
+        let args = self.cast_inputs.along_rays(args, run, self.gradient);
         self.cast_inputs
-            .along_rays(args, run, self.gradient)
-            .value("cast", &self.cast)
+            .by_steps(args, &self.cast)
             .value("shading", &self.shading)
             .write("color", color)
             .with(layers.writing(&LAYERS))

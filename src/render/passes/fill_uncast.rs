@@ -38,6 +38,7 @@ pub fn fill_uncast(
         .with("WITH_KIND", has(Layer::Kind))
         .with("WITH_DEPTH", has(Layer::Depth))
         .with("WITH_VALUE", has(Layer::Value))
+        .with("WITH_OCCLUSION", has(Layer::Occlusion))
         .with("WITH_NORMAL", u32::from(with_normals))
         .with("COUNTERS", has(Layer::Steps))
         .with("CERTIFICATE", has(Layer::Certificate));
@@ -47,7 +48,7 @@ pub fn fill_uncast(
         .value("opaque_from", &Emission::LAYERS_FROM)
         .read("cast", cast)
         .read_some("color", color.as_deref())
-        .with(layers.writing(&[Layer::Kind, Layer::Depth, Layer::Value]))
+        .with(layers.writing(&[Layer::Kind, Layer::Depth, Layer::Value, Layer::Occlusion]))
         .with(layers.writing(normals))
         .with(layers.writing(&[Layer::Steps, Layer::Nodes, Layer::Certificate]));
     run.screen("fill_uncast", defines, args)

@@ -1,12 +1,14 @@
 //! The inputs of every cast beside its own numbers.
 
-use crate::gpu::Args;
+use crate::gpu::{Args, Defines, Element};
+use crate::render::abi::Jitter;
 use crate::render::occupancy::Occupancy;
 use crate::render::resources::{DeviceClip, DeviceGradient, DeviceVolume};
 
 use super::run::Run;
 
-/// The inputs of every cast: the volume, its occupancy, and the clip planes.
+/// The inputs of every cast: the volume, its occupancy, and the clip planes; and how samples are shifted where they are
+/// at fixed steps.
 #[derive(Clone, Copy)]
 pub struct CastInputs<'a> {
     /// The volume, but for its voxels.
@@ -15,6 +17,8 @@ pub struct CastInputs<'a> {
     pub occupancy: &'a Occupancy,
     /// The scene's clip planes.
     pub clip: &'a DeviceClip,
+    /// How the samples of rays are shifted; `None`: they are not.
+    pub jitter: Option<Jitter>,
 }
 
 impl CastInputs<'_> {
@@ -41,6 +45,20 @@ impl CastInputs<'_> {
             .read("node_class", &self.occupancy.node_class)
             .read("node_range", &self.volume.node_range)
             .read("levels", &self.volume.levels)
+    }
+
+    /// Adds the switch of a cast at fixed steps.
+    pub fn define_steps(&self, defines: Defines) -> Defines {
+        defines.with("JITTERED", u32::from(self.jitter.is_some()))
+    }
+
+    /// Adds the numbers of a cast at fixed steps, and how samples are shifted where they are.
+    pub fn by_steps<T: Element>(&self, args: Args, cast: &T) -> Args {
+        let args = args.value("cast", cast);
+        match &self.jitter {
+            Some(jitter) => args.value("jitter", jitter),
+            None => args,
+        }
     }
 
     /// Adds the rays and where they see the volume; `gradient` where normals are made use of.

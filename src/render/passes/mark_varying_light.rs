@@ -15,9 +15,28 @@ pub struct MediumBlocks {
     pub max_error: f32,
     /// The length that absorption is measured in, mm.
     pub unit_length_mm: f32,
-    /// What shading makes of a colour at least and at most: it times the first, and it times the second plus the
-    /// third.
-    pub reflects: [f32; 4],
+    /// What shading makes of a colour.
+    pub reflects: Reflects,
+}
+
+/// What shading makes of a colour at least and at most: red, green, blue, linear light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reflects {
+    /// The least factor of the colour.
+    pub least: [f32; 4],
+    /// The greatest factor of the colour.
+    pub most: [f32; 4],
+    /// The most that is added to that.
+    pub added: [f32; 4],
+}
+
+impl Reflects {
+    /// What is not shaded shows its colour.
+    pub const UNSHADED: Self = Self {
+        least: [1.0, 1.0, 1.0, 0.0],
+        most: [1.0, 1.0, 1.0, 0.0],
+        added: [0.0; 4],
+    };
 }
 
 /// Marks in `marks` the pixels to be cast next whose blocks are not proven to have light and opacity within the error; the
@@ -44,7 +63,9 @@ pub fn mark_varying_light(
         .value("widest", &asked.blocks.widest)
         .value("max_error", &asked.max_error)
         .value("unit_length_mm", &asked.unit_length_mm)
-        .value("reflects", &asked.reflects)
+        .value("reflects_least", &asked.reflects.least)
+        .value("reflects_most", &asked.reflects.most)
+        .value("reflects_added", &asked.reflects.added)
         .write("cast", marks);
     let defines = run.variant.defines().with("LANES", LANES);
     let side = asked.blocks.square_side();

@@ -1,9 +1,12 @@
 //! One typed function per kernel of `kernels/pass`: `&` is read, `&mut` is written.
 
 mod adaptive_emission;
+mod add_picture;
+mod ambient_occlusion;
 mod cast_emission;
 mod cast_maximum;
 mod cast_surface;
+mod circles_of_confusion;
 mod compare_samples;
 mod count_marked;
 mod differ;
@@ -32,9 +35,12 @@ mod tone_curve;
 mod window_value;
 
 pub use adaptive_emission::adaptive_emission;
+pub use add_picture::add_picture;
+pub use ambient_occlusion::{Leaving, ambient_occlusion};
 pub use cast_emission::cast_emission;
 pub use cast_maximum::cast_maximum;
 pub use cast_surface::cast_surface;
+pub use circles_of_confusion::{Circles, circles_of_confusion};
 pub use compare_samples::compare_samples;
 pub use count_marked::count_marked;
 pub use differ::{Compared, Differs};
@@ -51,12 +57,12 @@ pub use mark_exceeding::{FirstValues, mark_exceeding};
 pub use mark_grid::mark_grid;
 pub use mark_refill::mark_refill;
 pub use mark_uncertain::{Blocks, Seen, SurfaceBlocks, mark_uncertain};
-pub use mark_varying_light::{MediumBlocks, mark_varying_light};
+pub use mark_varying_light::{MediumBlocks, Reflects, mark_varying_light};
 pub use mark_varying_values::mark_varying_values;
 pub use mean_of_samples::{SampledPixels, mean_of_samples};
 pub use run::{Passes, Run};
 pub use sample_field::sample_field;
-pub use shade_surface::shade_surface;
+pub use shade_surface::{Lit, shade_surface};
 pub use sum_counts::sum_counts;
 pub use surface_normal::surface_normal;
 pub use tone_curve::tone_curve;

@@ -8,21 +8,42 @@ use crate::render::resources::DeviceLayers;
 
 use super::run::Run;
 
-/// The `color` of each hit: where `shaded`, by the normal, else the base colour. Reads the kind.
+/// How a surface is lit.
+#[derive(Clone, Copy)]
+pub struct Lit<'a> {
+    /// Its colour, its lights, and how it reflects them.
+    pub shading: &'a Shading,
+    /// Where it reflects them, by the normals there; `None`: it shows its colour.
+    pub hit_mm: Option<&'a Buffer<f32>>,
+    /// How strongly the occlusion of light from everywhere shows, 0 to 1; `None`: it is not known.
+    pub occlusion: Option<f32>,
+}
+
+/// The `color` of each hit. Reads the kind.
 pub fn shade_surface(
     run: &mut Run,
-    shading: &Shading,
-    shaded: bool,
+    lit: Lit,
     layers: &DeviceLayers,
     color: &mut Buffer<[f32; 4]>,
 ) -> Result<()> {
-    let defines = run.defines().with("SHADED", u32::from(shaded));
-    let normal: &[Layer] = if shaded { &[Layer::Normal] } else { &[] };
+    let is_shaded = lit.hit_mm.is_some();
+    let strength = lit.occlusion.filter(|_| is_shaded);
+    let defines = run
+        .defines()
+        .with("SHADED", u32::from(is_shaded))
+        .with("OCCLUSION", u32::from(strength.is_some()));
+    let normal: &[Layer] = if is_shaded { &[Layer::Normal] } else { &[] };
     let args = Args::new()
         .with(&run.rays)
-        .value("shading", shading)
+        .value("shading", lit.shading)
+        .read_some("hit_mm", lit.hit_mm)
         .with(layers.reading(&[Layer::Kind]))
-        .with(layers.reading(normal))
-        .write("color", color);
-    run.cast("shade_surface", defines, args)
+        .with(layers.reading(normal));
+    let args = match &strength {
+        Some(strength) => args
+            .value("strength", strength)
+            .with(layers.reading(&[Layer::Occlusion])),
+        None => args,
+    };
+    run.cast("shade_surface", defines, args.write("color", color))
 }

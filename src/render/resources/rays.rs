@@ -11,7 +11,7 @@ use crate::extent::ImageSize;
 use crate::gpu::{Args, Buffer, Device, Element, Group};
 use crate::memory;
 use crate::render::abi::{Lanes, RayGrid, Rays};
-use crate::scene::{Camera, Lens};
+use crate::scene::{Camera, Lens, LensPoint};
 use crate::volume::Volume;
 
 /// A ray of its own, in index space.
@@ -82,7 +82,22 @@ impl RaySource {
     /// The rays that a camera sends through a picture of this size.
     pub fn of_camera(camera: &Camera, size: ImageSize, volume: &Volume) -> Self {
         Self::Camera {
-            grid: ray_grid(camera, size, volume),
+            grid: ray_grid(camera, size, volume, Through::CENTERS),
+            size,
+        }
+    }
+
+    /// The rays that a camera sends through a point of its lens, or through its pinhole, and through this place in each
+    /// pixel, in pixels from its upper left corner.
+    pub fn through_lens(
+        camera: &Camera,
+        size: ImageSize,
+        volume: &Volume,
+        lens: Option<LensPoint>,
+        place_px: [f64; 2],
+    ) -> Self {
+        Self::Camera {
+            grid: ray_grid(camera, size, volume, Through { lens, place_px }),
             size,
         }
     }
@@ -116,7 +131,7 @@ impl RaySource {
             (j / 4, i / 4, j, i)
         });
         Ok(Self::Pixels {
-            grid: ray_grid(camera, size, volume),
+            grid: ray_grid(camera, size, volume, Through::CENTERS),
             size,
             part: 0..listed.len(),
             listed: Arc::new(Buffer::upload(device, "list of pixels", &listed)?),
@@ -268,10 +283,27 @@ impl Linear {
     }
 }
 
+/// What the rays of a camera go through.
+#[derive(Clone, Copy)]
+struct Through {
+    /// A point of the lens; `None`: the pinhole.
+    lens: Option<LensPoint>,
+    /// A place in each pixel, from its upper left corner.
+    place_px: [f64; 2],
+}
+
+impl Through {
+    /// The pinhole, and the pixels' centres.
+    const CENTERS: Self = Self {
+        lens: None,
+        place_px: [0.5; 2],
+    };
+}
+
 /// The rays of every pixel. They start on a plane that faces the eye, just short of the volume's
 /// bounding sphere (at the eye when that lies inside it), so that index coordinates stay small
 /// however far the eye is.
-fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume) -> RayGrid {
+fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume, through: Through) -> RayGrid {
     let (center_world, radius_mm) = volume.bounding_sphere();
     // A little before the sphere: a ray through a corner that touches it must still enter by a face.
     let base_mm =
@@ -279,15 +311,16 @@ fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume) -> RayGrid {
     let index_from_world: DAffine3 = volume.geometry().index_from_world();
 
     let pixel_px = 2.0 / f64::from(size.height());
-    let first_u = (1.0 - f64::from(size.width())) / f64::from(size.height());
-    let first_v = (f64::from(size.height()) - 1.0) / f64::from(size.height());
+    let [x, y] = through.place_px;
+    let first_u = (2.0 * x - f64::from(size.width())) / f64::from(size.height());
+    let first_v = (f64::from(size.height()) - 2.0 * y) / f64::from(size.height());
     let across = |half_height: f64| Linear {
         at_first: (camera.right() * first_u + camera.up() * first_v) * half_height,
         per_column: camera.right() * (pixel_px * half_height),
         per_row: camera.up() * (-pixel_px * half_height),
     };
     let base_world = camera.eye_world() + camera.forward() * base_mm;
-    let (origin, mut dir) = match camera.lens() {
+    let (mut origin, mut dir) = match camera.lens() {
         Lens::Perspective { fov_deg } => {
             let tangent = (fov_deg.to_radians() / 2.0).tan();
             (across(tangent * base_mm), across(tangent))
@@ -295,6 +328,11 @@ fn ray_grid(camera: &Camera, size: ImageSize, volume: &Volume) -> RayGrid {
         Lens::Orthographic { height_mm } => (across(height_mm / 2.0), across(0.0)),
     };
     dir.at_first += camera.forward();
+    if let Some(point) = through.lens {
+        let [aside, slope] = camera.lens_shift(point);
+        origin.at_first += aside + slope * base_mm;
+        dir.at_first += slope;
+    }
 
     let across_index = dir.map(index_from_world.matrix3);
     let (dir_index, dir_index_low) = (across_index.float4s(), across_index.low_float4s());
@@ -357,7 +395,7 @@ mod tests {
     /// Largest distance, in voxels, of the device's rays from the camera's own in double
     /// precision, at the volume's centre depth.
     fn ray_error_voxels(camera: &Camera, size: ImageSize, volume: &Volume, shift_px: f64) -> f64 {
-        let grid = ray_grid(camera, size, volume);
+        let grid = ray_grid(camera, size, volume, Through::CENTERS);
         let index_from_world = volume.geometry().index_from_world();
         let xyz = |v: [f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
         let (center, _) = volume.bounding_sphere();

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::error::Result;
 use crate::gpu::{Buffer, Device};
 use crate::octree::Octree;
-use crate::render::abi::VolumeGrid;
+use crate::render::abi::{VolumeGrid, covector_scale};
 use crate::volume::Volume;
 
 /// The volume on the device, but for its voxels.
@@ -55,10 +55,7 @@ impl DeviceVolume {
 /// out (normals are unit), so that extreme spacings cost no precision.
 fn volume_grid(volume: &Volume, levels: u32) -> VolumeGrid {
     let covector_map = volume.geometry().index_from_world().matrix3;
-    let scale = covector_map
-        .to_cols_array()
-        .iter()
-        .fold(0.0f64, |max, m| max.max(m.abs()));
+    let scale = covector_scale(volume);
     // world = (index_from_world)ᵀ · index: its rows are the columns of index_from_world.
     let row = |column: DVec3| {
         let [x, y, z] = (column / scale).to_array().map(|c| c as f32);

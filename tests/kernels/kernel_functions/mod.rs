@@ -36,9 +36,10 @@ fn variant(voxel: VoxelType, filter: Filter, leaf: u32) -> Variant {
 
 const U8: VoxelType = VoxelType::U8;
 
-/// `kernels/test/<name>.cl` for `variant`.
+/// `kernels/test/<name>.cl` for `variant`, its samples not shifted.
 fn build(name: &'static str, variant: Variant) -> Arc<Pass> {
-    Pass::new("test", name, variant.defines(), [1, 1])
+    let defines = variant.defines().with("JITTERED", 0);
+    Pass::new("test", name, defines, [1, 1])
 }
 
 fn upload<T: Element>(device: &Device, elements: &[T]) -> Buffer<T> {

@@ -1,9 +1,9 @@
 //! The sample lattice and its spans of one node.
 
-use angioray::gpu::Args;
+use angioray::gpu::{Args, Pass};
 use angioray::scene::Filter;
 
-use super::{Random, U8, build, common, room, run, upload, variant, xyz};
+use super::{Random, U8, common, room, run, upload, variant, xyz};
 
 const ROOM: usize = 512;
 
@@ -27,32 +27,41 @@ fn first_three([x, y, z, _]: [u32; 4]) -> [u32; 3] {
     [x, y, z]
 }
 
+/// By how much of a step samples are shifted toward the eye; not at all; in a kernel that could.
+const AHEAD: [Option<f32>; 4] = [None, Some(0.0), Some(0.375), Some(0.9999)];
+
 // long: the kernel's arguments, three times in one order.
 fn on_device(
     size: [u32; 3],
-    leaf: u32,
-    level: u32,
+    [leaf, level]: [u32; 2],
     step_mm: f32,
+    ahead: Option<f32>,
     rays: &[([f32; 4], [f32; 4])],
 ) -> Option<Vec<Walked>> {
     let device = common::device()?;
-    let pass = build("spans", variant(U8, Filter::Linear, leaf));
+    let defines = variant(U8, Filter::Linear, leaf).defines();
+    let defines = defines.with("JITTERED", u32::from(ahead.is_some()));
+    let pass = Pass::new("test", "spans", defines, [1, 1]);
     let origins: Vec<[f32; 4]> = rays.iter().map(|ray| ray.0).collect();
     let dirs: Vec<[f32; 4]> = rays.iter().map(|ray| ray.1).collect();
     let mut sizes = room::<[u32; 4]>(&device, rays.len());
     let mut points = room::<[f32; 4]>(&device, rays.len() * ROOM);
     let [mut cells, mut spans, mut lasts] =
         [(); 3].map(|()| room::<[u32; 4]>(&device, rays.len() * ROOM));
+    let args = Args::new()
+        .value("count", &(rays.len() as u32))
+        .value("room", &(ROOM as u32))
+        .value("size", &[size[0], size[1], size[2], 0])
+        .value("level", &level)
+        .value("step_mm", &step_mm);
+    let args = match ahead {
+        Some(ahead) => args.value("ahead", &ahead),
+        None => args,
+    };
     run(
         &device,
         &pass,
-        Args::new()
-            .value("count", &(rays.len() as u32))
-            .value("room", &(ROOM as u32))
-            .value("size", &[size[0], size[1], size[2], 0])
-            .value("level", &level)
-            .value("step_mm", &step_mm)
-            .read("origins", &upload(&device, &origins))
+        args.read("origins", &upload(&device, &origins))
             .read("dirs", &upload(&device, &dirs))
             .write("sizes", &mut sizes)
             .write("points", &mut points)
@@ -186,6 +195,7 @@ fn spans_tile_the_lattice_by_nodes() {
     let mut random = Random(7);
     let (mut spans, mut runs, mut walks) = (0, 0, 0);
     let (mut far_apart, mut coarser_faults) = (0, 0);
+    let mut ahead = AHEAD.into_iter().cycle();
     for (size, leaf) in [
         ([40, 33, 27], 4),
         ([64, 5, 31], 5),
@@ -196,14 +206,15 @@ fn spans_tile_the_lattice_by_nodes() {
         for level in 0..4 {
             for step_mm in [0.3, 1.7, 9.0] {
                 let rays = rays(size, leaf, &mut random);
-                let Some(all) = on_device(size, leaf, level, step_mm, &rays) else {
+                let ahead = ahead.next().flatten();
+                let Some(all) = on_device(size, [leaf, level], step_mm, ahead, &rays) else {
                     return;
                 };
                 for (ray, walked) in rays.iter().zip(&all) {
                     let fault = tiling_fault(walked, leaf, level).or(touch_fault(walked, leaf));
                     assert_eq!(
                         fault, None,
-                        "{size:?} leaf {leaf} level {level} step {step_mm}: {ray:?}"
+                        "{size:?} leaf {leaf} level {level} step {step_mm} ahead {ahead:?}: {ray:?}"
                     );
                     // In nodes of half the size the same spans are too long.
                     coarser_faults +=
@@ -242,18 +253,32 @@ fn samples_lie_a_step_apart_from_entry_to_exit() {
     let size = [40, 33, 27];
     let step = 0.3_f32;
     let rays = rays(size, 4, &mut Random(8));
-    let Some(all) = on_device(size, 4, 0, step, &rays) else {
-        return;
-    };
+    for ahead in AHEAD {
+        let Some(all) = on_device(size, [4, 0], step, ahead, &rays) else {
+            return;
+        };
+        let seen = check_places(size, step, ahead.unwrap_or(0.0), rays.iter().zip(&all));
+        assert!(seen > 10_000, "{seen}");
+    }
+}
+
+/// Checks that samples lie where they should, and counts them.
+fn check_places<'a>(
+    size: [u32; 3],
+    step: f32,
+    ahead: f32,
+    walked: impl Iterator<Item = (&'a ([f32; 4], [f32; 4]), &'a Walked)>,
+) -> usize {
     let mut seen = 0;
-    for (&(origin, dir), walked) in rays.iter().zip(&all) {
+    for (&(origin, dir), walked) in walked {
         let Some((first, last)) = walked.points.first().zip(walked.points.last()) else {
             continue;
         };
         seen += walked.points.len();
         let (enter, exit) = (f64::from(first[3]), f64::from(last[3]));
         for (k, &point) in walked.points.iter().enumerate() {
-            let t = (enter + k as f64 * f64::from(step)).min(exit);
+            let steps = (k as f64 - f64::from(ahead)).max(0.0);
+            let t = (enter + steps * f64::from(step)).min(exit);
             for axis in 0..3 {
                 let at = f64::from(origin[axis]) + t * f64::from(dir[axis]);
                 assert!(
@@ -263,8 +288,8 @@ fn samples_lie_a_step_apart_from_entry_to_exit() {
                 assert!((0.0..=f64::from(size[axis] - 1)).contains(&f64::from(point[axis])));
             }
         }
-        let steps = (exit - enter) / f64::from(step);
+        let steps = (exit - enter) / f64::from(step) + f64::from(ahead);
         assert!((steps.ceil() - (walked.points.len() - 1) as f64).abs() <= 1.0);
     }
-    assert!(seen > 10_000, "{seen}");
+    seen
 }

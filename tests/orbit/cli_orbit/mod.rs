@@ -6,6 +6,7 @@ use crate::common;
 
 mod animations;
 mod frames;
+mod jitter;
 mod refused;
 mod resuming;
 mod statistics;

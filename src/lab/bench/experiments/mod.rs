@@ -1,6 +1,7 @@
 //! The experiments, a file each; those that repeat a paper's are named after its first author, year and
 //! table.
 
+mod check_sampling;
 mod convergence;
 mod gradients;
 mod lesar_2015_figure_5;
@@ -13,6 +14,7 @@ mod ruijters_2006_classification;
 mod ruijters_2006_figure_6;
 mod ruijters_2006_termination;
 mod scharsach_2005_figure_4;
+mod scharsach_2005_figure_6;
 mod scharsach_2005_table_1;
 mod scharsach_2005_table_2;
 mod sparse;
@@ -37,9 +39,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
     sparse_rays::EXPERIMENT,
     gradients::EXPERIMENT,
     tolerance::EXPERIMENT,
+    check_sampling::EXPERIMENT,
     scharsach_2005_table_1::EXPERIMENT,
     scharsach_2005_table_2::EXPERIMENT,
     scharsach_2005_figure_4::EXPERIMENT,
+    scharsach_2005_figure_6::EXPERIMENT,
     ruijters_2006_figure_6::EXPERIMENT,
     ruijters_2006_termination::EXPERIMENT,
     ruijters_2006_classification::EXPERIMENT,

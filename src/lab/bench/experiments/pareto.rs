@@ -108,7 +108,7 @@ fn place(
     let key = |part: &str| format!("{}: {mode}: {part}", dataset.name);
     let errors: Vec<PictureError> = bench.unit(&key("errors"), || {
         let scene = dataset.scene(side_px, &view)?;
-        let wanted = evaluated_planes(&scene.picture);
+        let wanted = evaluated_planes(&scene);
         let reference = reference::render(&dataset.volume, &scene, wanted, bench.progress)?;
         let scenes = scenes.iter();
         scenes

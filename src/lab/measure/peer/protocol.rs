@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 use crate::scene::{
-    Camera, Filter, Gradient, Lens, Light, Phong, Picture, Projection, Reflection, Scene,
+    Camera, Filter, Gradient, Lens, Light, LightFrom, Phong, Picture, Projection, Reflection, Scene,
 };
 use crate::volume::Volume;
 
@@ -76,8 +76,9 @@ pub(super) struct SceneRequest {
     #[serde(flatten)]
     picture: PictureRequest,
     phong: Option<PhongRequest>,
-    /// Toward a distant light; `None`: a headlight, by which every ray is lit along itself.
-    toward_light: Option<[f64; 3]>,
+    /// The gradient, stored units per mm, from which a medium is shaded fully; 0: all of it.
+    shaded_from: f64,
+    lights: Vec<LightRequest>,
     /// `[nx, ny, nz, d]`: points with n·p + d ≥ 0 stay.
     clip_planes: Vec<[f64; 4]>,
 }
@@ -118,9 +119,40 @@ enum PictureRequest {
 struct PhongRequest {
     reflection: &'static str,
     ambient: f64,
+    ambient_color: [f64; 3],
     diffuse: f64,
+    diffuse_color: [f64; 3],
     specular: f64,
+    specular_color: [f64; 3],
     shininess: f64,
+}
+
+/// A light; neither `toward` nor `at`: a headlight, by which every ray is lit along itself.
+#[derive(Serialize)]
+struct LightRequest {
+    /// Times its intensity.
+    color: [f64; 3],
+    /// The unit vector toward a distant light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    toward: Option<[f64; 3]>,
+    /// A point, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 3]>,
+}
+
+impl LightRequest {
+    fn of(light: Light, camera: &Camera) -> Self {
+        let (toward, at) = match light.shines_from(camera) {
+            LightFrom::Eye => (None, None),
+            LightFrom::Direction(toward_light) => (Some(toward_light.to_array()), None),
+            LightFrom::Point(at_world) => (None, Some(at_world.to_array())),
+        };
+        Self {
+            color: light.linear().0,
+            toward,
+            at,
+        }
+    }
 }
 
 impl CameraRequest {
@@ -165,10 +197,13 @@ impl SceneRequest {
             },
             picture: PictureRequest::of(&scene.picture, volume),
             phong: phong.map(PhongRequest::of),
-            toward_light: match scene.light {
-                Light::Headlight => None,
-                Light::Distant { toward_light } => Some(toward_light.unit().to_array()),
+            shaded_from: match &scene.picture {
+                Picture::Emission(emission) => emission.shaded_from.get() / volume.rescale().slope,
+                Picture::Surface { .. } | Picture::Projection { .. } => 0.0,
             },
+            lights: (scene.lights.iter())
+                .map(|light| LightRequest::of(*light, &scene.camera))
+                .collect(),
             clip_planes: planes
                 .map(|plane| plane.normal_world().extend(plane.offset()).to_array())
                 .collect(),
@@ -215,8 +250,11 @@ impl PhongRequest {
                 Reflection::BlinnPhong => "blinn-phong",
             },
             ambient: phong.ambient.get(),
+            ambient_color: phong.ambient_color.0,
             diffuse: phong.diffuse.get(),
+            diffuse_color: phong.diffuse_color.0,
             specular: phong.specular.get(),
+            specular_color: phong.specular_color.0,
             shininess: phong.shininess.get(),
         }
     }

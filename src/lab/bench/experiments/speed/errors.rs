@@ -56,7 +56,7 @@ impl<'a> SparseReference<'a> {
     /// As [`reference::render_pixels`].
     pub fn of(bench: &Bench, dataset: &'a Dataset, scene: &Scene) -> Result<Self> {
         let pixels = drawn(scene.size, bench.preset);
-        let wanted = evaluated_planes(&scene.picture);
+        let wanted = evaluated_planes(scene);
         let volume = &dataset.volume;
         let reference = reference::render_pixels(volume, scene, wanted, &pixels, bench.progress)?;
         Ok(Self {

@@ -292,7 +292,7 @@ fn evaluated(
     let scene = &candidate.scene;
     let counting = Wanted::DISPLAY.with(Layer::COUNTERS);
     let counted = renderer.render(scene, counting)?.frame;
-    let compared = evaluated_planes(&scene.picture)
+    let compared = evaluated_planes(scene)
         .without(Layer::COUNTERS)
         .without([Layer::Kind]);
     let frame = renderer.render(scene, compared)?.frame;

@@ -1,0 +1,94 @@
+//! What a point of a surface sees of the space before it.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use crate::volume::Voxel;
+
+use super::cells::Walk;
+use super::field::{Field, bounds};
+use super::interval::Interval;
+
+/// Rays over a hemisphere.
+const RAYS: u32 = 1024;
+
+/// The share of a turn from one ray to the next: the golden ratio's fractional part.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// The share of a hemisphere about the unit vector `normal`, weighted by the cosine to it, in whose directions `is_open`.
+///
+/// A disc of equal areas about the normal's foot is the hemisphere seen from above, weighted by that cosine (Malley's method:
+/// Pharr, Jakob and Humphreys 2016, §13.6.3). On it lie 1024 directions, a spiral from its middle to its edge (Vogel 1979):
+/// so the share is exact where all or none is open. Where a straight line parts what is open from what is not it is off by
+/// 0.0012 in the mean and 0.006 at most.
+pub fn open_share(normal: DVec3, mut is_open: impl FnMut(DVec3) -> bool) -> f64 {
+    let (across, along) = normal.any_orthonormal_pair();
+    let mut open = 0;
+    for n in (0..RAYS).map(f64::from) {
+        let area = (n + 0.5) / f64::from(RAYS);
+        let (sin, cos) = (TAU * (n * GOLDEN).fract()).sin_cos();
+        let aside = area.sqrt() * (cos * across + sin * along);
+        open += u32::from(is_open(aside + (1.0 - area).sqrt() * normal));
+    }
+    f64::from(open) / f64::from(RAYS)
+}
+
+/// Whether "Φ ≥ iso" changes on an interval that begins where it is `inside`.
+pub fn is_crossed<T: Voxel>(field: &Field<T>, interval: &Interval, iso: f64, inside: bool) -> bool {
+    Walk::new(field.lattice, interval).any(|segment| {
+        let corners = field.corners(segment.cell).map(|value| value - iso);
+        let (low, high) = bounds(&corners);
+        if inside && low >= 0.0 || !inside && high < 0.0 {
+            return false;
+        }
+        let above = Field::<T>::along(&corners, &segment);
+        let ends = above.monotone_ends();
+        ends.iter().any(|&s| (above.at(s) >= 0.0) != inside)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn a_share_of_the_hemisphere_is_weighted_by_the_cosine() {
+        for normal in [
+            DVec3::Z,
+            DVec3::new(0.6, -0.8, 0.0),
+            DVec3::new(1.0, 2.0, -2.0) / 3.0,
+        ] {
+            assert_eq!(open_share(normal, |_| true), 1.0);
+            assert_eq!(open_share(normal, |_| false), 0.0);
+            // A cone of the half-angle a has the share sin^2 a, not 1 - cos a, its part of the solid angle.
+            let cone = |degrees: f64| {
+                let cos = degrees.to_radians().cos();
+                open_share(normal, |dir| dir.dot(normal) > cos)
+            };
+            for degrees in [20.0_f64, 45.0, 70.0] {
+                let share = degrees.to_radians().sin().powi(2);
+                assert!((cone(degrees) - share).abs() < 0.001, "{degrees}");
+            }
+            assert!((cone(45.0) - (1.0 - 0.5_f64.sqrt())).abs() > 0.1);
+            // What lies to one side of a line, where the disc's own share is known.
+            let (across, along) = normal.any_orthonormal_pair();
+            for (turn, line) in [(0.0_f64, 0.0_f64), (0.3, 0.2), (1.7, 0.5), (4.0, 0.8)] {
+                let toward = turn.cos() * across + turn.sin() * along;
+                let share = 0.5 + (line.asin() + line * (1.0 - line * line).sqrt()) / PI;
+                let found = open_share(normal, |dir| dir.dot(toward) < line);
+                assert!(
+                    (found - share).abs() < 0.006,
+                    "{turn} {line}: {found} {share}"
+                );
+            }
+            // Directions are unit vectors on the normal's side.
+            open_share(normal, |dir| {
+                assert!((dir.length() - 1.0).abs() < 1e-12 && dir.dot(normal) > 0.0);
+                true
+            });
+        }
+    }
+}

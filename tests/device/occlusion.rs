@@ -1,0 +1,323 @@
+//! Ambient occlusion on the device: against closed forms, and against the reference.
+
+use angioray::Subject;
+use angioray::extent::{Dims, ImageSize};
+use angioray::frame::error::color_error;
+use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, Wanted};
+use angioray::gpu::Device;
+use angioray::render::{Lanes, Options, Renderer};
+use angioray::scene::{
+    AntiAliasing, Camera, ClipPlane, Gradient, Lens, Mode, Picture, Sampling, SamplingMethod,
+    Scene, ScreenError, Sparse, Traverse,
+};
+use angioray::volume::{Geometry, PhantomKind, PhantomSpec, Volume, phantom};
+use glam::{DMat3, DVec3};
+
+use crate::common::{self, on_device, on_reference};
+use crate::occlusion_cases::{Case, balls, inside_edge, occlusion, planes, tubes};
+
+fn accessibility(device: &Device, case: &Case) -> f64 {
+    let frames = on_device(device, &case.volume, std::slice::from_ref(&case.scene));
+    assert_eq!(
+        frames[0].plane(KIND).unwrap(),
+        [Kind::Surface as u32],
+        "{}",
+        case.name
+    );
+    1.0 - f64::from(frames[0].plane(OCCLUSION).unwrap()[0])
+}
+
+#[test]
+fn accessibility_is_that_of_closed_forms() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    for case in planes() {
+        assert_eq!(accessibility(&device, &case), 1.0, "{}", case.name);
+    }
+    let curved = balls().into_iter().chain(inside_edge()).chain(tubes());
+    for case in curved {
+        let error = (accessibility(&device, &case) - case.accessibility).abs();
+        assert!(error < 0.01, "{}: {error}", case.name);
+    }
+    // The control: another distance is another accessibility.
+    let mut case = inside_edge().remove(2);
+    case.scene.ambient_occlusion = Some(occlusion(1024, 24.0));
+    assert!((accessibility(&device, &case) - case.accessibility).abs() > 0.1);
+}
+
+fn vessels() -> Volume {
+    let dims = Dims::new([48; 3]).unwrap();
+    phantom(&PhantomSpec::new(PhantomKind::Vessels, dims))
+        .unwrap()
+        .volume
+}
+
+fn scene(volume: &Volume, rays: u32) -> Scene {
+    let picture = Picture::of_mode(Mode::Iso, &Subject::of(volume)).unwrap();
+    let mut scene = common::scene(volume, 96, picture);
+    scene.sampling = Sampling::default();
+    scene.ambient_occlusion = Some(occlusion(rays, 8.0));
+    scene
+}
+
+/// Mean difference of the occlusion over pixels that both hit, and the mean of the signed one.
+fn apart(reference: &Frame, frame: &Frame) -> [f64; 2] {
+    let (kinds, others) = (reference.plane(KIND).unwrap(), frame.plane(KIND).unwrap());
+    let pairs = reference
+        .plane(OCCLUSION)
+        .unwrap()
+        .iter()
+        .zip(frame.plane(OCCLUSION).unwrap());
+    let both: Vec<f64> = pairs
+        .zip(kinds.iter().zip(others))
+        .filter(|(_, (a, b))| **a != Kind::Nothing as u32 && **b != Kind::Nothing as u32)
+        .map(|((a, b), _)| f64::from(b - a))
+        .collect();
+    assert!(both.len() > 300, "{} pixels", both.len());
+    let mean = |sum: f64| sum / both.len() as f64;
+    [
+        mean(both.iter().map(|d| d.abs()).sum()),
+        mean(both.iter().sum()),
+    ]
+}
+
+#[test]
+fn more_rays_are_less_wrong() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let rays = [4, 16, 64, 256];
+    let scenes = rays.map(|rays| scene(&volume, rays));
+    let reference = on_reference(&volume, &scenes[0]);
+    let frames = on_device(&device, &volume, &scenes);
+    let errors: Vec<[f64; 2]> = frames
+        .iter()
+        .map(|frame| apart(&reference, frame))
+        .collect();
+    // Four times the rays halve the error at least, until it is the reference's own.
+    for pair in errors.windows(2) {
+        assert!(pair[1][0] < pair[0][0] * 0.55 + 0.002, "{errors:?}");
+    }
+    assert!(errors[3][0] < 0.006, "{errors:?}");
+    // No bias, whatever their number.
+    for [_, bias] in &errors {
+        assert!(bias.abs() < 0.003, "{errors:?}");
+    }
+    // The control: something is occluded.
+    let none = on_reference(
+        &volume,
+        &Scene {
+            ambient_occlusion: None,
+            ..scenes[0].clone()
+        },
+    );
+    assert!(apart(&reference, &none)[0] > 0.05);
+}
+
+#[test]
+fn skipping_and_lanes_change_nothing() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let octree = common::octree(&volume);
+    let base = scene(&volume, 8);
+    let render = |scene: &Scene, lanes| {
+        let options = Options {
+            lanes,
+            ..Options::default()
+        };
+        let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
+        renderer.render(scene, Wanted::ALL).unwrap().frame
+    };
+    let plain = render(&base, None);
+    let occluded = plain.plane(OCCLUSION).unwrap();
+    assert!(occluded.iter().any(|share| *share > 0.0));
+    for lanes in Lanes::ALL {
+        let frame = render(&base, Some(lanes));
+        assert_eq!(frame.plane(OCCLUSION).unwrap(), occluded, "{lanes:?}");
+        assert_eq!(frame.color, plain.color, "{lanes:?}");
+    }
+    for traverse in Traverse::ALL {
+        let mut scene = base.clone();
+        scene.sampling.traverse = traverse;
+        assert_eq!(
+            render(&scene, None).plane(OCCLUSION).unwrap(),
+            occluded,
+            "{traverse:?}"
+        );
+    }
+    let mut everything = base.clone();
+    everything.sampling.skip = false;
+    assert_eq!(
+        render(&everything, None).plane(OCCLUSION).unwrap(),
+        occluded
+    );
+    // Normals are another thing than what is in the way.
+    let mut forward = base.clone();
+    forward.gradient = Gradient::Forward;
+    assert_eq!(render(&forward, None).plane(OCCLUSION).unwrap(), occluded);
+    assert_ne!(render(&forward, None).color, plain.color);
+    // The control: from elsewhere it is another picture.
+    let mut turned = base.clone();
+    turned.camera = common::camera(&volume, DVec3::NEG_X);
+    assert_ne!(render(&turned, None).plane(OCCLUSION).unwrap(), occluded);
+}
+
+/// Tubes side by side in a volume whose axes are neither of one length nor at right angles.
+fn oblique_tubes() -> Volume {
+    let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.0, 0.0), DVec3::NEG_Z);
+    let geometry = Geometry::new(
+        DVec3::new(5.0, -3.0, 2.0),
+        shear,
+        DVec3::new(0.5, 1.25, 0.8),
+    );
+    common::volume_with([40, 24, 32], geometry.unwrap(), |x, y, z| {
+        let tube = |cx: f64, cz: f64, r: f64| r - ((x - cx) * 0.6).hypot(z - cz + 0.2 * y);
+        (40.0 * tube(14.0, 12.0, 4.0).max(tube(26.0, 20.0, 3.0)).max(-2.0) + 100.0) as f32
+    })
+}
+
+#[test]
+fn it_is_the_references_in_oblique_volumes_from_any_camera() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = oblique_tubes();
+    let (center, radius_mm) = volume.bounding_sphere();
+    let parallel = Lens::Orthographic {
+        height_mm: 1.6 * radius_mm,
+    };
+    let eye = center + 3.0 * radius_mm * DVec3::new(0.4, -0.7, 0.5);
+    let inside = Lens::Perspective { fov_deg: 100.0 };
+    let tube = volume
+        .geometry()
+        .world_from_index()
+        .transform_point3(DVec3::new(14.0, 12.0, 9.6));
+    let along = volume
+        .geometry()
+        .world_from_index()
+        .transform_vector3(DVec3::Y * 5.0);
+    let cameras = [
+        Camera::look_at(eye, center, DVec3::Z, parallel).unwrap(),
+        Camera::look_at(tube, tube + along, DVec3::X, inside).unwrap(),
+    ];
+    for camera in cameras {
+        let mut scene = scene(&volume, 256);
+        scene.size = ImageSize::new(40, 40).unwrap();
+        scene.camera = camera;
+        scene.clip_planes = vec![ClipPlane::new(DVec3::Y, -center.y + 0.8 * radius_mm).unwrap()];
+        scene.ambient_occlusion = Some(occlusion(256, 4.0));
+        let reference = on_reference(&volume, &scene);
+        let frames = on_device(&device, &volume, &[scene]);
+        let [mean, bias] = apart(&reference, &frames[0]);
+        assert!(mean < 0.01 && bias.abs() < 0.003, "{mean} {bias}");
+        let shares = reference.plane(OCCLUSION).unwrap();
+        assert!(shares.iter().any(|share| *share > 0.05));
+    }
+}
+
+#[test]
+fn every_ray_has_its_own_however_many_there_are() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let octree = common::octree(&volume);
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    let whole = scene(&volume, 16);
+    let mut render = |scene: &Scene| renderer.render(scene, Wanted::ALL).unwrap().frame;
+    let expected = render(&whole);
+    // Certified to be the whole picture.
+    let certified = |error: f64| {
+        let error = ScreenError::new(error).unwrap();
+        Scene {
+            sparse: Some(Sparse::new(None, None, Some(error), Mode::Iso).unwrap()),
+            ..whole.clone()
+        }
+    };
+    let same = render(&certified(0.0));
+    assert!(same.plane(OCCLUSION) == expected.plane(OCCLUSION));
+    assert!(same.color == expected.color);
+    // Listed pixels.
+    let listed: Vec<u32> = (0..96 * 96).filter(|pixel| pixel % 7 == 3).collect();
+    let some = renderer
+        .render_pixels(&whole, Wanted::ALL, &listed)
+        .unwrap()
+        .frame;
+    for pixel in listed.iter().map(|&pixel| pixel as usize) {
+        assert_eq!(
+            some.plane(OCCLUSION).unwrap()[pixel],
+            expected.plane(OCCLUSION).unwrap()[pixel]
+        );
+    }
+    // Many rays in a pixel, each with its own points.
+    let mut many = whole.clone();
+    many.size = ImageSize::new(24, 24).unwrap();
+    many.anti_aliasing = AntiAliasing::new(3, false).unwrap();
+    many.ambient_occlusion = Some(occlusion(64, 8.0));
+    let frame = renderer.render(&many, Wanted::ALL).unwrap().frame;
+    let error = color_error(&on_reference(&volume, &many), &frame).unwrap();
+    assert!(error.rmse < 0.004 && error.max < 0.04, "{error:?}");
+    let plain = renderer
+        .render(
+            &Scene {
+                ambient_occlusion: None,
+                ..many.clone()
+            },
+            Wanted::ALL,
+        )
+        .unwrap()
+        .frame;
+    let without = color_error(&on_reference(&volume, &many), &plain).unwrap();
+    assert!(without.rmse > 3.0 * error.rmse, "{without:?}");
+}
+
+#[test]
+fn hits_that_are_interpolated_are_put_on_the_surface() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    // Two balls side by side.
+    let volume = common::volume_of([44, 30, 30], |x, y, z| {
+        let ball =
+            |cx: f64| 11.0 - ((x - cx).powi(2) + (y - 15.2).powi(2) + (z - 14.7).powi(2)).sqrt();
+        (100.0 + 8.0 * ball(13.0).max(ball(32.0))) as f32
+    });
+    let mut whole = scene(&volume, 16);
+    whole.size = ImageSize::new(192, 192).unwrap();
+    let Picture::Surface { iso, .. } = &mut whole.picture else {
+        panic!("a surface");
+    };
+    *iso = 100.0;
+    let error = ScreenError::new(1.0).unwrap();
+    let sparse = Scene {
+        sparse: Some(Sparse::new(None, None, Some(error), Mode::Iso).unwrap()),
+        ..whole.clone()
+    };
+    let frames = on_device(&device, &volume, &[whole, sparse]);
+    let cast = frames[1].plane(CAST).unwrap();
+    let kinds = frames[1].plane(KIND).unwrap().iter().zip(cast);
+    let interpolated = kinds
+        .filter(|(kind, cast)| **kind != 0 && **cast == 0)
+        .count();
+    assert!(interpolated > 50, "{interpolated}");
+    let [mean, bias] = apart(&frames[0], &frames[1]);
+    assert!(mean < 0.004 && bias.abs() < 0.002, "{mean} {bias}");
+}
+
+#[test]
+fn fixed_steps_are_put_on_the_surface_too() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let exact = scene(&volume, 64);
+    let mut fixed = exact.clone();
+    fixed.sampling.method = SamplingMethod::Fixed;
+    let frames = on_device(&device, &volume, &[exact, fixed]);
+    let [mean, bias] = apart(&frames[0], &frames[1]);
+    assert!(mean < 0.004 && bias.abs() < 0.002, "{mean} {bias}");
+}

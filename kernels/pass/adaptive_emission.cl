@@ -275,7 +275,7 @@ kernel void adaptive_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS TRANS
     Ints nodes_tested = INTS(0);
     if (ANY(visible.meets)) {
         CellMarch march = cell_march(volume, skip_by_class(node_class, levels, cells), &visible, cast.traverse, true);
-        Emitter emitter = {{knot_values, knot_colors, cast.knots}, TRANSFER_SUMS_GIVEN, cast, volume, shading,
+        Emitter emitter = {{knot_values, knot_colors, cast.knots}, TRANSFER_SUMS_GIVEN, cast, volume, &shading,
                            direction_to_eye(visible.ray) EMITTER_DIRECTIONS_GIVEN};
         Floats share_per_mm = 0.5f * cast.bound / max_of(visible.interval.exit - visible.interval.enter, FLOATS(FLT_MIN));
         emit_along(voxels, &emitter, &accumulated, &march, share_per_mm, &samples);

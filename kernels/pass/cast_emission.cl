@@ -217,7 +217,7 @@ kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NOD
         SkipGrid grid = skip_by_class(node_class, levels, cells);
         Steps spacing = STEPS(cast.step_mm, pixels);
         SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, spacing, 1, !HOMOGENEOUS);
-        Emitter emitter = {{knot_values, knot_colors, cast.knots}, SUMS_GIVEN, cast, volume, shading,
+        Emitter emitter = {{knot_values, knot_colors, cast.knots}, SUMS_GIVEN, cast, volume, &shading,
                            direction_to_eye(visible.ray) EMITTER_DIRECTIONS_GIVEN};
         PanelContext context;
         context.emitter = emitter;

@@ -29,8 +29,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
     .hint("choose another --device; '--device reference' needs none"))
 }
 
-/// The bytes that a scene's picture takes on the device for marks and lists of pixels, and for the planes of
-/// the rays that are cast at a time where a pixel has many.
+/// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
+/// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
 pub fn listing_bytes(scene: &Scene) -> u64 {
     /// A mark and a number in the list.
     const LISTED: u64 = 4 + 4;
@@ -40,10 +40,11 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         scene.size.pixels() as u64,
         u64::from(scene.anti_aliasing.rays()),
     );
+    let of_lens = scene.depth_of_field.map_or(0, |_| pixels * RAY);
     if rays > 1 {
-        return pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
+        return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
     }
-    scene.sparse.map_or(0, |_| pixels * LISTED)
+    of_lens + scene.sparse.map_or(0, |_| pixels * LISTED)
 }
 
 /// Checks that a frame of this size fits beside `held_bytes` of volume and octree. Counts the most that a picture

@@ -10,7 +10,7 @@
 #error "a work-item takes one pixel: LANES is 1"
 #endif
 
-kernel void compare_samples(const global uint *listed, uint first, uint count, uint per_pixel, const global float4 *sample_color,
+kernel void compare_samples(const global uint2 *listed, uint first, uint count, uint per_pixel, const global float4 *sample_color,
                             const global float4 *color, global float2 *apart)
 {
     uint n = (uint)(get_global_id(1) * get_global_size(0) + get_global_id(0));
@@ -20,7 +20,7 @@ kernel void compare_samples(const global uint *listed, uint first, uint count, u
     for (uint k = n * per_pixel; k < (n + 1u) * per_pixel; k++)
         sum += sample_color[k];
     float4 mean = sum / (float)per_pixel;
-    float4 one = color[listed[first + n]];
+    float4 one = color[listed[first + n].x];
     float red = fabs(srgb_from_linear(mean.x) - srgb_from_linear(one.x));
     float green = fabs(srgb_from_linear(mean.y) - srgb_from_linear(one.y));
     float blue = fabs(srgb_from_linear(mean.z) - srgb_from_linear(one.z));

@@ -19,9 +19,9 @@ kernel void count_marked(RayGrid rays, const global uint *cast, global uint *cou
     uint in_blocks = 0u;
     for (uint j = y; j < y_end; j++)
         for (uint i = x; i < x_end; i++) {
-            uint mark = cast[j * rays.width + i];
-            next += mark == MARK_NEXT ? 1u : 0u;
-            in_blocks += mark >= MARK_BLOCK ? 1u : 0u;
+            uint kind = kind_of_mark(cast[j * rays.width + i]);
+            next += kind == MARK_NEXT ? 1u : 0u;
+            in_blocks += kind == MARK_BLOCK ? 1u : 0u;
         }
     uint square = y / LISTED_SQUARE * across + x / LISTED_SQUARE;
     counts[square] = next;

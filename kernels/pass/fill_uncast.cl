@@ -58,7 +58,7 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
 #if FILLING == FILLING_BLOCKS
-    Mask shown = mark >= (int)MARK_BLOCK;
+    Mask shown = is_block_mark(mark);
     pixels.inside = pixels.inside & (shown | mark == (int)MARK_FILLED);
     Ints side = shown ? side_of_mark(mark) : INTS(1);
     int beyond = 0;

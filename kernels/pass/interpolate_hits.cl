@@ -23,7 +23,7 @@ kernel void interpolate_hits(RayGrid rays, float iso, const global uint *cast, g
 {
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
-    pixels.inside = pixels.inside & mark >= (int)MARK_BLOCK;
+    pixels.inside = pixels.inside & is_block_mark(mark);
     if (!ANY(pixels.inside))
         return;
     Ints side = pixels.inside ? side_of_mark(mark) : INTS(1);

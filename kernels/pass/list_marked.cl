@@ -3,13 +3,13 @@
 // empty. Marks the first as cast.
 //
 // A work-item lists the pixels of one square. Reads where each square begins (sum_counts), of the first and then of the
-// second. Writes listed and cast.
+// second. Writes listed, pixels and where their rays may meet something first, and cast.
 #include "lib/ray/marks.clh"
 
 // The pixels along a tile's edge: the largest that a work-item follows.
 #define TILE 4u
 
-kernel void list_marked(RayGrid rays, const global uint *begins, global uint *cast, global uint *listed)
+kernel void list_marked(RayGrid rays, const global uint *begins, global uint *cast, global uint2 *listed)
 {
     uint across = (rays.width + LISTED_SQUARE - 1u) / LISTED_SQUARE;
     uint down = (rays.height + LISTED_SQUARE - 1u) / LISTED_SQUARE;
@@ -30,11 +30,11 @@ kernel void list_marked(RayGrid rays, const global uint *begins, global uint *ca
                 continue;
             uint pixel = j * rays.width + i;
             uint mark = cast[pixel];
-            if (mark == MARK_NEXT) {
+            if (kind_of_mark(mark) == MARK_NEXT) {
                 cast[pixel] = MARK_CAST;
-                listed[next++] = pixel;
-            } else if (mark >= MARK_BLOCK) {
-                listed[next_in_block++] = pixel;
+                listed[next++] = (uint2)(pixel, start_of_mark(mark));
+            } else if (kind_of_mark(mark) == MARK_BLOCK) {
+                listed[next_in_block++] = (uint2)(pixel, START_UNKNOWN);
             }
         }
     }

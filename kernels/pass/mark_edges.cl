@@ -7,7 +7,7 @@
 // channels, sRGB-encoded, and of opacity.
 //
 // Reads what one ray a pixel saw. Writes cast and, with COVERAGE, the share of that ray that met something.
-#include "lib/ray/pixels.clh"
+#include "lib/ray/marks.clh"
 #include "lib/ray/planes.clh"
 #include "lib/light/color.clh"
 
@@ -51,7 +51,8 @@ kernel void mark_edges(RayGrid rays, float threshold, float opaque_from, const g
     Pixels pixels = tile_pixels(rays);
     if (!ANY(pixels.inside))
         return;
-    Mask marked = pixels.inside & read_ints(cast, pixels) == (int)MARK_CAST;
+    Ints before = read_ints(cast, pixels);
+    Mask marked = pixels.inside & is_cast_mark(before);
 #if WITH_KIND
     Ints here = read_ints(kind, pixels);
 #endif
@@ -93,6 +94,6 @@ kernel void mark_edges(RayGrid rays, float threshold, float opaque_from, const g
         }
         differs = differs | change(center, beside) > threshold;
     }
-    Ints mark = differs ? INTS((int)MARK_NEXT) : INTS((int)MARK_FILLED);
+    Ints mark = differs ? next_after_cast(before) : INTS((int)MARK_FILLED);
     SCATTER(marked, cast, pixels.index, mark);
 }

@@ -56,11 +56,9 @@ static inline bool is_below(VOXELS voxels, const Packet *packet, PacketRegion re
 
 #define LOOKED_INSIDE 2
 
-// The slices of cells in which a frustum meets what may lie inside, none of them outside `known`; false: there are none.
-// Blocks of the lowest LOOKED_INSIDE levels look into cells too where they pass those that the surface may cross, and
-// those of the lowest stop at the first slice that is met.
-static inline bool meets(VOXELS voxels, const SkipGrid *grid, VolumeGrid volume, float iso, Ray corners, int level, SliceRange known,
-                         SliceRange *met)
+// The first slice of cells in which a frustum meets what may lie inside, from `known` on; false: there is none. Blocks of the
+// lowest LOOKED_INSIDE levels look into cells too where they pass those that the surface may cross.
+static inline bool meets(VOXELS voxels, const SkipGrid *grid, VolumeGrid volume, float iso, Ray corners, int level, Slice known, Slice *met)
 {
     Packet packet;
     PacketLines lines;
@@ -69,27 +67,23 @@ static inline bool meets(VOXELS voxels, const SkipGrid *grid, VolumeGrid volume,
         return true;
     if (is_outside(&packet))
         return false;
-    packet_within(&packet, known);
-    met->axis = packet.main.index;
-    met->low = INT_MAX;
-    met->high = INT_MIN;
+    packet_from(&packet, known);
     Ints tested = INTS(0);
     PacketRegion region;
     while (packet_next(&packet, voxels, grid, iso, &region, &tested)) {
         if (region.class == CLASS_BELOW || (level < LOOKED_INSIDE && region.class == CLASS_VISIT && is_below(voxels, &packet, region, iso)))
             continue;
-        met->low = min(met->low, region.low);
-        met->high = max(met->high, region.high - 1);
-        if (level == 0)
-            return true;
+        met->axis = packet.main.index;
+        met->at = packet.forward ? region.low : region.high - 1;
+        return true;
     }
-    return met->low <= met->high;
+    return false;
 }
 
 #if SURFACES
 // Whether interpolation between a block's corners is proven to miss the surface by no more than an error.
 static inline bool is_smooth(VOXELS voxels, const SkipGrid *grid, ClipPlanes clip, VolumeGrid volume, RayGrid rays, Block block, float iso,
-                             float max_error_mm, SliceRange met)
+                             float max_error_mm, Slice met)
 {
     return smooth_error_mm(voxels, grid, clip, volume, iso, corner_rays(rays, block, 0.0f), block_spread(rays, block, met.axis), met) <= max_error_mm;
 }
@@ -98,20 +92,25 @@ static inline bool is_smooth(VOXELS voxels, const SkipGrid *grid, ClipPlanes cli
 #define MAX_FAILED 8
 #endif
 
+static inline uint start_at(Slice met)
+{
+    return met.axis < 0 ? START_UNKNOWN : ray_start(met.axis, met.at);
+}
+
 kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid volume, RayGrid rays, uint spacing, uint block_levels, uint widest,
                            float margin, float max_error_mm, float iso SEEN_PLANE, global uint *cast)
 {
     SkipGrid grid = skip_by_class(node_class, levels, cells);
     BlockWalk walk = block_walk(spacing, block_levels);
-    // Per level, what is known of its blocks from the one that they are quarters of.
-    SliceRange known[MAX_BLOCK_LEVELS + 1];
+    // Per level, from where on its blocks may meet something, as is known from the one that they are quarters of.
+    Slice known[MAX_BLOCK_LEVELS + 1];
     known[walk.level].axis = -1;
 #if SURFACES
     int failed = 0;
 #endif
     Block block;
     while (block_next(&walk, rays, &block)) {
-        SliceRange met;
+        Slice met;
         bool seen = IS_SEEN(block);
         bool may_show = seen
                      || meets(voxels, &grid, volume, iso, corner_rays(rays, block, margin), walk.level, known[walk.level], &met);
@@ -123,13 +122,15 @@ kernel void mark_uncertain(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid
         }
 #endif
         if (smooth) {
-            mark_interpolated(rays, block, (int)widest, met.axis, cast);
+            mark_interpolated(rays, block, (int)widest, met.axis, mark_with_start(MARK_NEXT, start_at(met)), cast);
         } else if (may_show && walk.level > 0) {
             walk.level--;
             known[walk.level] = met;
             continue;
         } else {
-            mark_block(rays, block, seen ? MARK_CAST : may_show ? MARK_NEXT : MARK_FILLED, cast);
+            uint mark = seen ? mark_with_start(MARK_CAST, start_at(known[walk.level]))
+                      : may_show ? mark_with_start(MARK_NEXT, start_at(met)) : MARK_FILLED;
+            mark_block(rays, block, mark, cast);
         }
         block_pass(&walk);
     }

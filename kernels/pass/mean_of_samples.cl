@@ -16,13 +16,13 @@
 #define COVERAGE_PLANE
 #endif
 
-kernel void mean_of_samples(const global uint *listed, uint first, uint count, uint per_pixel, float opaque_from,
+kernel void mean_of_samples(const global uint2 *listed, uint first, uint count, uint per_pixel, float opaque_from,
                             const global float4 *sample_color SAMPLE_KIND, global float4 *color COVERAGE_PLANE)
 {
     uint n = (uint)(get_global_id(1) * get_global_size(0) + get_global_id(0));
     if (n >= count)
         return;
-    uint pixel = listed[first + n];
+    uint pixel = listed[first + n].x;
     float4 sum = (float4)(0.0f);
     uint met = 0u;
     for (uint k = n * per_pixel; k < (n + 1u) * per_pixel; k++) {

@@ -31,5 +31,6 @@ elements! {
     f32 => "float",
     [f32; 2] => "float2",
     [f32; 4] => "float4",
+    [u32; 2] => "uint2",
     [u32; 4] => "uint4",
 }

@@ -221,7 +221,7 @@ pub const MARK_CAST: u32 = 1;
 /// The mark of a pixel that is cast next.
 pub const MARK_NEXT: u32 = 2;
 
-/// The first of the marks of pixels that are interpolated in a block that has its corners to itself.
+/// The mark of pixels that are interpolated in a block that has its corners to itself.
 const MARK_BLOCK: u32 = 3;
 
 /// The numbers that belong to no enum, or to one whose own numbers pictures hold.

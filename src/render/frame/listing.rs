@@ -8,10 +8,10 @@ use crate::gpu::Buffer;
 use crate::render::abi::LISTED_SQUARE;
 use crate::render::passes::{Run, count_marked, list_marked, sum_counts};
 
-/// A list of pixels, counted row by row.
+/// A list of pixels, counted row by row, each with where its ray may meet something first.
 pub struct Listed {
     /// First those that are cast next.
-    pub pixels: Arc<Buffer<u32>>,
+    pub pixels: Arc<Buffer<[u32; 2]>>,
     next: usize,
 }
 

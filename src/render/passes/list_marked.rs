@@ -12,7 +12,7 @@ pub fn list_marked(
     run: &mut Run,
     begins: &Buffer<u32>,
     cast: &mut Buffer<u32>,
-    listed: &mut Buffer<u32>,
+    listed: &mut Buffer<[u32; 2]>,
 ) -> Result<()> {
     let args = run
         .screen_args()?

@@ -17,7 +17,7 @@ const ROW: usize = 1024;
 /// Pixels that have several rays each.
 pub struct SampledPixels<'a> {
     /// Pixels, counted row by row.
-    pub listed: &'a Buffer<u32>,
+    pub listed: &'a Buffer<[u32; 2]>,
     /// The part of the list that has rays.
     pub part: Range<usize>,
     /// The number of rays of each.

@@ -48,8 +48,9 @@ pub enum RaySource {
         grid: RayGrid,
         /// The picture's size.
         size: ImageSize,
-        /// Pixels, counted row by row.
-        listed: Arc<Buffer<u32>>,
+        /// Pixels, counted row by row, each with where its rays may meet something first, 0 where that is not known
+        /// (`kernels/lib/ray/pixels.clh`).
+        listed: Arc<Buffer<[u32; 2]>>,
         /// The part of the list that has rays.
         part: Range<usize>,
     },
@@ -59,8 +60,9 @@ pub enum RaySource {
         grid: RayGrid,
         /// The picture's size.
         size: ImageSize,
-        /// Pixels, counted row by row.
-        listed: Arc<Buffer<u32>>,
+        /// Pixels, counted row by row, each with where its rays may meet something first, 0 where that is not known
+        /// (`kernels/lib/ray/pixels.clh`).
+        listed: Arc<Buffer<[u32; 2]>>,
         /// The part of the list that has rays.
         part: Range<usize>,
         /// Rays along each side of a pixel.
@@ -130,6 +132,7 @@ impl RaySource {
             let (i, j) = (pixel % width, pixel / width);
             (j / 4, i / 4, j, i)
         });
+        let listed: Vec<[u32; 2]> = listed.into_iter().map(|pixel| [pixel, 0]).collect();
         Ok(Self::Pixels {
             grid: ray_grid(camera, size, volume, Through::CENTERS),
             size,

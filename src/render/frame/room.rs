@@ -32,8 +32,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
 /// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
 /// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
 pub fn listing_bytes(scene: &Scene) -> u64 {
-    /// A mark and a number in the list.
-    const LISTED: u64 = 4 + 4;
+    /// A mark, and two numbers in the list.
+    const LISTED: u64 = 4 + 8;
     /// Colour, normal, t and kind.
     const RAY: u64 = 16 + 16 + 4 + 4;
     let (pixels, rays) = (

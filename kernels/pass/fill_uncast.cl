@@ -3,11 +3,11 @@
 // the second those whose marks say that they belong to a block of their own (marks.clh).
 //
 // An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value,
-// occlusion and normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
+// occlusion, visibility and normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
 // what a pixel meets in its opacity.
 //
 // Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE,
-// OCCLUSION, NORMAL, COUNTERS, CERTIFICATE).
+// OCCLUSION, VISIBILITY, NORMAL, COUNTERS, CERTIFICATE).
 #include "lib/ray/blocks.clh"
 #include "lib/ray/planes.clh"
 
@@ -36,6 +36,11 @@
 #else
 #define OCCLUSION_PLANE
 #endif
+#if WITH_VISIBILITY
+#define VISIBILITY_PLANE , global float *visibility
+#else
+#define VISIBILITY_PLANE
+#endif
 #if WITH_NORMAL
 #define NORMAL_PLANE , global float4 *normal
 #else
@@ -53,7 +58,7 @@
 #endif
 
 kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const global uint *cast COLOR_PLANE KIND_PLANE DEPTH_PLANE
-                        VALUE_PLANE OCCLUSION_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
+                        VALUE_PLANE OCCLUSION_PLANE VISIBILITY_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
@@ -133,6 +138,13 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     kept = meets ? mean_of(occlusion, corners.place, weight) : kept;
 #endif
     SCATTER(pixels.inside, occlusion, pixels.index, kept);
+#endif
+#if WITH_VISIBILITY
+    Floats reached = FLOATS(0.0f);
+#if FILLING != FILLING_EMPTY
+    reached = meets ? mean_of(visibility, corners.place, weight) : reached;
+#endif
+    SCATTER(pixels.inside, visibility, pixels.index, reached);
 #endif
 #if WITH_NORMAL
     Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};

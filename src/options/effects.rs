@@ -2,9 +2,18 @@
 
 use super::group::group;
 use super::text_form::text_form;
-use crate::scene::{AmbientOcclusion, DepthOfField, DofMethod, Phong, Reflectance};
+use crate::scene::{
+    AmbientOcclusion, DepthOfField, DofMethod, LightSizeDeg, Phong, Reflectance, ShadowMethod,
+    Shadows,
+};
 
-text_form!(AmbientOcclusion, DepthOfField, DofMethod);
+text_form!(
+    AmbientOcclusion,
+    DepthOfField,
+    DofMethod,
+    LightSizeDeg,
+    ShadowMethod
+);
 
 group! {
     /// What light and lens do beyond reflection at a point.
@@ -16,6 +25,16 @@ group! {
         /// strongly it shows [default of S: 1]
         #[arg(long, value_name = "rays=N,distance=MM,strength=S", allow_hyphen_values = true)]
         ao: AmbientOcclusion,
+
+        /// Shadows: lights but headlights are dimmed where the volume itself is in their way. on: by rays from
+        /// cell to cell toward each light; in dvr also step=K, by rays whose samples are K times the sample step
+        /// apart, and cached:N, from a grid of optical depths with N points along its longest side
+        #[arg(long, value_name = "on|step=K|cached:N")]
+        shadows: ShadowMethod,
+
+        /// The angle in degrees that each light fills, from 0 to 90: shadows of a surface get soft edges
+        #[arg(long, value_name = "DEG")]
+        light_size: LightSizeDeg,
 
         /// Depth of field: a lens of this diameter in place of a pinhole, or cones of this half-angle of an
         /// orthographic camera (aperture=1deg), in focus at a distance in mm along the view axis, at the
@@ -39,7 +58,20 @@ impl EffectOptions {
     /// Returns the options that make the same, where the way to make depth of field has its default.
     pub(super) fn resolve(self) -> Self {
         let dof_method = self.dof.map(|_| self.dof_method.unwrap_or_default());
-        Self { dof_method, ..self }
+        let light_size = self.shadows.map(|_| self.light_size.unwrap_or_default());
+        Self {
+            dof_method,
+            light_size,
+            ..self
+        }
+    }
+
+    /// Returns the shadows that are asked for.
+    pub(super) fn cast_shadows(&self) -> Option<Shadows> {
+        self.shadows.map(|method| Shadows {
+            method,
+            light_size: self.light_size.unwrap_or_default(),
+        })
     }
 
     /// Returns how light is reflected where nothing else is given: where light from everywhere may be occluded there is more

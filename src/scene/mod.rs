@@ -24,6 +24,7 @@ mod picture;
 mod quadrature;
 pub(crate) mod quantities;
 mod sampling;
+mod shadows;
 mod sparse;
 mod srgb_color;
 pub(crate) mod toml_error;
@@ -49,11 +50,13 @@ pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
     Brightness, Contrast, DistanceMm, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity,
-    RayCount, Reflectance, ScreenError, ShadedFrom, Share, Shininess, StepVoxels, Termination,
+    LightSizeDeg, RayCount, Reflectance, ScreenError, ShadedFrom, ShadowStep, Share, Shininess,
+    StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
 };
+pub use shadows::{GridSide, ShadowMethod, Shadows};
 pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
 pub use tone::Tone;
@@ -86,6 +89,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// How much of the light from everywhere a surface keeps from itself; `None`: nothing.
     pub ambient_occlusion: Option<AmbientOcclusion>,
+    /// How the lights are kept from points of the volume by the volume itself; `None`: they are not.
+    pub shadows: Option<Shadows>,
     /// The lens; `None`: a pinhole.
     pub depth_of_field: Option<DepthOfField>,
     /// How gradients are computed for normals, in the layer and in shading.
@@ -120,6 +125,7 @@ impl Scene {
             sparse: None,
             lights: vec![Light::default()],
             ambient_occlusion: None,
+            shadows: None,
             depth_of_field: None,
             gradient: Gradient::default(),
             tone: Tone::default(),

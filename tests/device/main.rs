@@ -25,6 +25,7 @@ mod recon;
 mod refinement;
 mod sampling_alone;
 mod screen_error;
+mod shadows;
 mod sparse;
 mod termination;
 mod voxel_images;

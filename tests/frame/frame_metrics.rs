@@ -3,10 +3,9 @@
 
 use angioray::extent::ImageSize;
 use angioray::frame::error::{
-    Scale, color_error, depth_error, figures, flip, normal_error, occlusion_error, ssim,
-    value_error,
+    Scale, color_error, depth_error, figures, flip, normal_error, share_error, ssim, value_error,
 };
-use angioray::frame::{DEPTH, Frame, Layers, NORMAL, OCCLUSION, VALUE};
+use angioray::frame::{DEPTH, Frame, Layers, NORMAL, OCCLUSION, VALUE, VISIBILITY};
 
 fn picture(width: u32, height: u32, at: impl Fn(i64, i64, i64) -> f64) -> Frame {
     let size = ImageSize::new(width, height).unwrap();
@@ -43,7 +42,7 @@ fn near(figure: f64, expected: f64, within: f64) {
 }
 
 #[test]
-fn occlusion_is_compared_where_both_cover() {
+fn shares_of_light_are_compared_where_both_cover() {
     let with = |occlusion: [f32; 4], alphas: [f32; 4]| {
         let mut frame = flat(4, 1, 0.5);
         frame.color = alphas.map(|alpha| [0.0, 0.0, 0.0, alpha]).to_vec();
@@ -52,19 +51,21 @@ fn occlusion_is_compared_where_both_cover() {
     };
     let reference = with([0.5, 0.25, 0.0, 0.75], [1.0, 1.0, 1.0, 0.0]);
     let frame = with([0.75, 0.125, 0.0, 0.5], [1.0; 4]);
-    let error = occlusion_error(&reference, &frame).unwrap();
+    let error = share_error(&reference, &frame, OCCLUSION).unwrap();
     // 0.25 too dark, 0.125 too bright, and one that is right.
     assert_eq!(error.compared, 3);
     assert_eq!((error.mean, error.bias), (Some(0.125), Some(0.125 / 3.0)));
     assert_eq!((error.p99, error.max), (Some(0.25), Some(0.25)));
     // The other way round it is as far, and too bright.
-    let error = occlusion_error(&frame, &reference).unwrap();
+    let error = share_error(&frame, &reference, OCCLUSION).unwrap();
     assert_eq!((error.mean, error.bias), (Some(0.125), Some(-0.125 / 3.0)));
+    // Another plane of shares is another.
+    assert!(share_error(&reference, &frame, VISIBILITY).is_err());
     // Where nothing is to be compared there is no figure; without the plane there is an error.
     let none = with([0.0; 4], [0.0; 4]);
-    let error = occlusion_error(&reference, &none).unwrap();
+    let error = share_error(&reference, &none, OCCLUSION).unwrap();
     assert_eq!((error.compared, error.mean, error.bias), (0, None, None));
-    assert!(occlusion_error(&reference, &flat(4, 1, 0.5)).is_err());
+    assert!(share_error(&reference, &flat(4, 1, 0.5), OCCLUSION).is_err());
 }
 
 #[test]

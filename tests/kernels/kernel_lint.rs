@@ -425,7 +425,9 @@ fn the_switches_are_read_from_the_kernels() {
             ("NORMALS", 2),
             ("QUADRATURE", 6),
             ("RAYS", 4),
-            ("SHADED", 2)
+            ("SHADED", 2),
+            ("SHADOWS", 4),
+            ("VISIBILITY", 2)
         ])
     );
     assert_eq!(
@@ -434,7 +436,13 @@ fn the_switches_are_read_from_the_kernels() {
     );
     assert_eq!(
         of("pass/shade_surface.cl"),
-        named(&[("LANES", 3), ("OCCLUSION", 2), ("RAYS", 4), ("SHADED", 2)])
+        named(&[
+            ("LANES", 3),
+            ("OCCLUSION", 2),
+            ("RAYS", 4),
+            ("SHADED", 2),
+            ("VISIBILITY", 2)
+        ])
     );
     assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
     // Work-items that are no tiles of rays have one number of lanes.

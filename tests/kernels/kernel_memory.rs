@@ -162,7 +162,7 @@ const MODES: [&str; 22] = [
 
 /// Fewer rays and more of them, and samples of their own, of the last volume, which has several leaves: they share the casts
 /// with the others.
-const RAY_COUNTS: [&str; 13] = [
+const RAY_COUNTS: [&str; 15] = [
     "--mode iso --iso 40% --screen-error 0.5",
     "--mode mip --screen-error 0.3",
     "--mode dvr --shading none --screen-error 0.3",
@@ -172,6 +172,8 @@ const RAY_COUNTS: [&str; 13] = [
     "--mode mip --sparse 3 --refill flood",
     "--mode iso --iso 40% --sparse 4:0.1",
     "--mode iso --iso 40% --aa 2 --ao rays=2,distance=3",
+    "--mode iso --iso 40% --shadows on --light-size 9 --light 1,1,1 --light point:40,5,9",
+    "--mode dvr --shading phong --shadows cached:5 --light 1,1,1 --light point:40,5,9",
     "--mode dvr --dof focus=auto,aperture=2,darken=1 --dof-method lens:2",
     "--mode iso --iso 40% --step 0.7 --jitter interleaved:3",
     "--mode mip --step 1.3 --jitter hash:5 --aa 2",

@@ -5,6 +5,7 @@ mod antialias;
 mod casting;
 mod emission;
 mod lens;
+mod light_grids;
 mod listing;
 mod picture;
 mod planes;

@@ -23,6 +23,8 @@ pub struct Planes {
     pub layers: DeviceLayers,
     /// t of each hit, mm from the base plane; a surface's.
     pub hit_mm: Option<Buffer<f32>>,
+    /// What reaches each hit of each light, where shadows are cast.
+    pub lights_reached: Option<Buffer<[f32; 4]>>,
     /// The share of each pixel's rays that met something, where it is wanted.
     pub coverage: Option<Buffer<f32>>,
     /// The marks, which say which pixels were cast; `None`: all were.
@@ -50,6 +52,7 @@ impl Planes {
             display: None,
             layers: planes,
             hit_mm: None,
+            lights_reached: None,
             coverage: None,
             cast: None,
             check: None,
@@ -64,7 +67,11 @@ impl Planes {
         let display = self.display.as_ref().map_or(0, |display| display.bytes());
         let hit = self.hit_mm.as_ref().map_or(0, |hit| hit.bytes());
         let cast = self.cast.as_ref().map_or(0, |cast| cast.bytes());
-        self.color.bytes() + display + hit + cast + self.layers.bytes() + self.other_bytes
+        let reached = self
+            .lights_reached
+            .as_ref()
+            .map_or(0, |reached| reached.bytes());
+        self.color.bytes() + reached + display + hit + cast + self.layers.bytes() + self.other_bytes
     }
 
     /// What pixels are compared by.

@@ -32,8 +32,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
 /// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
 /// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
 pub fn listing_bytes(scene: &Scene) -> u64 {
-    /// A mark and a number in the list.
-    const LISTED: u64 = 4 + 4;
+    /// A mark, and two numbers in the list.
+    const LISTED: u64 = 4 + 8;
     /// Colour, normal, t and kind.
     const RAY: u64 = 16 + 16 + 4 + 4;
     let (pixels, rays) = (
@@ -60,10 +60,12 @@ pub fn check_picture(
 ) -> Result<()> {
     const COLOR: u64 = 16;
     const HIT: u64 = 4;
+    /// What reaches the hits of each light.
+    const REACHED: u64 = 16;
     let display = if wanted.display { COLOR } else { 0 };
     // Layers that are not wanted may be needed to make those that are.
     let layers: u64 = Layer::ALL.map(DeviceLayers::entry_bytes).iter().sum();
-    let on_device = COLOR + display + HIT + layers;
+    let on_device = COLOR + display + HIT + REACHED + layers;
     let read_back = match device.kind {
         DeviceKind::Cpu => on_device,
         DeviceKind::Gpu | DeviceKind::Accelerator => 0,
@@ -129,7 +131,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (2 * 16 + 10 * 4);
+        let needs = 100 * (3 * 16 + 11 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

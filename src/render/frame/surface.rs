@@ -7,10 +7,10 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, ambient_occlusion, cast_surface, exact_surface,
-    interpolate_hits, mark_uncertain, shade_surface, surface_normal,
+    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, TowardLights, ambient_occlusion, cast_shadows,
+    cast_surface, exact_surface, interpolate_hits, mark_uncertain, shade_surface, surface_normal,
 };
-use crate::render::resources::Hemispheres;
+use crate::render::resources::RaySets;
 use crate::scene::{
     AmbientOcclusion, Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError, ShadedFrom,
 };
@@ -38,13 +38,18 @@ pub struct SurfacePasses<'a> {
     light: Shading,
     is_shaded: bool,
     occlusion: Option<Occlusion>,
+    /// The directions about the middle of each light, where shadows are cast.
+    shadows: Option<RaySets>,
 }
 
 /// Ambient occlusion with what its pass reads.
 struct Occlusion {
     asked: AmbientOcclusion,
-    hemispheres: Hemispheres,
+    directions: RaySets,
 }
+
+/// The rays toward each light from a hit, where the light has a size.
+const SOFT_RAYS: u32 = 32;
 
 /// How far from a surface the rays that leave it begin, in voxels of the smallest spacing: so far that single
 /// precision knows the side on which they are, unless they leave it within a few thousandths of its tangents.
@@ -64,15 +69,22 @@ impl<'a> SurfacePasses<'a> {
         let occlusion = |asked: AmbientOcclusion| {
             Ok(Occlusion {
                 asked,
-                hemispheres: Hemispheres::upload(run.device, asked.rays.get())?,
+                directions: RaySets::over_hemisphere(run.device, asked.rays.get())?,
             })
         };
+        let scene = view.scene;
+        let is_shaded = surface.phong.is_some();
+        let shadows = scene.shadows.filter(|_| is_shaded).map(|shadows| {
+            let radius = 0.5 * shadows.light_size.get().to_radians();
+            RaySets::over_light(run.device, SOFT_RAYS, radius)
+        });
         Ok(Self {
             view,
             cast: surface_cast(view, iso, surface),
-            light: shading(&material, view.scene, view.volume),
-            is_shaded: surface.phong.is_some(),
-            occlusion: view.scene.ambient_occlusion.map(occlusion).transpose()?,
+            light: shading(&material, scene, view.volume),
+            is_shaded,
+            occlusion: scene.ambient_occlusion.map(occlusion).transpose()?,
+            shadows: shadows.transpose()?,
         })
     }
 
@@ -101,6 +113,9 @@ impl<'a> SurfacePasses<'a> {
         if self.occlusion.is_some() {
             layers.push(Layer::Occlusion);
         }
+        if self.shadows.is_some() && wanted.has(Layer::Visibility) {
+            layers.push(Layer::Visibility);
+        }
         layers
     }
 }
@@ -109,8 +124,12 @@ impl Schedule for SurfacePasses<'_> {
     fn planes(&self, run: &Run) -> Result<Planes> {
         let mut planes = Planes::new(run, &self.layers())?;
         planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
-        let hemispheres = self.occlusion.as_ref();
-        planes.other_bytes += hemispheres.map_or(0, |occlusion| occlusion.hemispheres.bytes());
+        let occlusion = self.occlusion.as_ref();
+        planes.other_bytes += occlusion.map_or(0, |occlusion| occlusion.directions.bytes());
+        if let Some(directions) = &self.shadows {
+            planes.lights_reached = Some(run.plane("plane of lights", [0.0; 4])?);
+            planes.other_bytes += directions.bytes();
+        }
         Ok(planes)
     }
 
@@ -189,33 +208,45 @@ impl Schedule for SurfacePasses<'_> {
 }
 
 impl SurfacePasses<'_> {
-    /// Finds the normals of the rays' hits and what is occluded of them, where those are needed, and shades them.
+    /// Finds the normals of the rays' hits, what is occluded of them and what reaches them of lights, where those are needed,
+    /// and shades them.
     fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
+            lights_reached,
             color,
             ..
         } = planes
         else {
             return Ok(());
         };
+        let inputs = self.view.inputs;
         if layers.has(Layer::Normal) {
-            surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)?;
+            surface_normal(run, inputs, self.view.gradient, hit_mm, layers)?;
         }
-        if let Some(Occlusion { asked, hemispheres }) = &self.occlusion {
-            let volume = self.view.volume;
-            let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
-            let scale = covector_scale(volume);
+        let volume = self.view.volume;
+        let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
+        let scale = covector_scale(volume);
+        if let Some(Occlusion { asked, directions }) = &self.occlusion {
             let leaving = Leaving {
-                hemispheres,
+                directions,
                 t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
             };
-            ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)?;
+            ambient_occlusion(run, inputs, &self.cast, leaving, hit_mm, layers)?;
+        }
+        if let (Some(directions), Some(reached)) = (&self.shadows, lights_reached.as_mut()) {
+            let toward = TowardLights {
+                shading: &self.light,
+                directions,
+                t_min: (start_mm * scale) as f32,
+            };
+            cast_shadows(run, inputs, &self.cast, toward, hit_mm, layers, reached)?;
         }
         let lit = Lit {
             shading: &self.light,
             hit_mm: self.is_shaded.then_some(&*hit_mm),
+            lights_reached: lights_reached.as_ref(),
             occlusion: (self.occlusion.as_ref())
                 .map(|occlusion| occlusion.asked.strength.get() as f32),
         };

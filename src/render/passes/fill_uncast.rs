@@ -20,6 +20,15 @@ pub struct Fill {
     pub with_normals: bool,
 }
 
+/// The layers of what a ray meets that are filled as means.
+const OF_POINTS: [Layer; 5] = [
+    Layer::Kind,
+    Layer::Depth,
+    Layer::Value,
+    Layer::Occlusion,
+    Layer::Visibility,
+];
+
 /// Fills the pixels that were not cast: the colour, where it is given, and the layers.
 pub fn fill_uncast(
     run: &mut Run,
@@ -39,6 +48,7 @@ pub fn fill_uncast(
         .with("WITH_DEPTH", has(Layer::Depth))
         .with("WITH_VALUE", has(Layer::Value))
         .with("WITH_OCCLUSION", has(Layer::Occlusion))
+        .with("WITH_VISIBILITY", has(Layer::Visibility))
         .with("WITH_NORMAL", u32::from(with_normals))
         .with("COUNTERS", has(Layer::Steps))
         .with("CERTIFICATE", has(Layer::Certificate));
@@ -48,7 +58,7 @@ pub fn fill_uncast(
         .value("opaque_from", &Emission::LAYERS_FROM)
         .read("cast", cast)
         .read_some("color", color.as_deref())
-        .with(layers.writing(&[Layer::Kind, Layer::Depth, Layer::Value, Layer::Occlusion]))
+        .with(layers.writing(&OF_POINTS))
         .with(layers.writing(normals))
         .with(layers.writing(&[Layer::Steps, Layer::Nodes, Layer::Certificate]));
     run.screen("fill_uncast", defines, args)

@@ -1,13 +1,13 @@
 //! What lies on the device for many frames or for one: voxels, the octree's tables, the transfer function,
-//! clip planes, gradients, rays, directions over hemispheres, planes of layers.
+//! clip planes, gradients, rays, sets of directions, planes of layers.
 
 mod clip;
 mod device_transfer;
 mod directions;
 mod gradient;
 mod held_volume;
-mod hemispheres;
 mod layers;
+mod ray_sets;
 mod rays;
 mod transfer;
 mod volume;
@@ -18,8 +18,8 @@ pub use device_transfer::{DeviceTransfer, Tables};
 pub use directions::{AngleError, Directions};
 pub use gradient::{DeviceDirections, DeviceGradient, GradientFigures, needed_gradients};
 pub use held_volume::HeldVolume;
-pub use hemispheres::Hemispheres;
 pub use layers::DeviceLayers;
+pub use ray_sets::RaySets;
 pub use rays::{IndexRay, RaySource};
 pub use transfer::{Knots, unit_absorption};
 pub use volume::DeviceVolume;

@@ -2,9 +2,11 @@
 
 use super::group::group;
 use super::text_form::text_form;
-use crate::scene::{AmbientOcclusion, DepthOfField, DofMethod, Phong, Reflectance};
+use crate::scene::{
+    AmbientOcclusion, DepthOfField, DofMethod, Occlusion, Phong, Reflectance, ScreenOcclusion,
+};
 
-text_form!(AmbientOcclusion, DepthOfField, DofMethod);
+text_form!(AmbientOcclusion, DepthOfField, DofMethod, ScreenOcclusion);
 
 group! {
     /// What light and lens do beyond reflection at a point.
@@ -16,6 +18,16 @@ group! {
         /// strongly it shows [default of S: 1]
         #[arg(long, value_name = "rays=N,distance=MM,strength=S", allow_hyphen_values = true)]
         ao: AmbientOcclusion,
+
+        /// Ambient occlusion within MM estimated from the picture alone: from N pixels around each, an even number
+        /// up to 1024 [default of N: 32]. What is seen is as thick as it is (layer thick), or MM with thickness=MM;
+        /// what lies behind it or outside the picture occludes nothing
+        #[arg(
+            long,
+            value_name = "radius=MM,samples=N,strength=S",
+            allow_hyphen_values = true
+        )]
+        ssao: ScreenOcclusion,
 
         /// Depth of field: a lens of this diameter in place of a pinhole, or cones of this half-angle of an
         /// orthographic camera (aperture=1deg), in focus at a distance in mm along the view axis, at the
@@ -42,11 +54,17 @@ impl EffectOptions {
         Self { dof_method, ..self }
     }
 
+    /// Returns what dims the light from everywhere, and how it is found.
+    pub(super) fn occlusion(&self) -> Option<Occlusion> {
+        let of_screen = self.ssao.map(Occlusion::Screen);
+        self.ao.map(Occlusion::Rays).or(of_screen)
+    }
+
     /// Returns how light is reflected where nothing else is given: where light from everywhere may be occluded there is more
     /// of it.
     pub(super) fn phong(&self) -> Phong {
         let default = Phong::default();
-        match self.ao {
+        match self.occlusion() {
             None => default,
             Some(_) => Phong {
                 ambient: Reflectance::OCCLUDED,

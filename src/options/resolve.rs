@@ -95,7 +95,7 @@ impl SceneOptions {
             anti_aliasing: of_sampling.aa.unwrap_or_default(),
             sparse,
             lights,
-            ambient_occlusion: effects.ao,
+            ambient_occlusion: effects.occlusion(),
             depth_of_field: effects.dof,
             gradient,
             tone,

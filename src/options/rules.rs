@@ -241,6 +241,8 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| format!("{}, all of it", text::<ShadeFrom>())),
     scene("ao", What, &[OCCLUDES, Need::Shading])
         .default(|| "none".to_owned()),
+    scene("ssao", What, &[OCCLUDES, Need::Shading])
+        .default(|| "none".to_owned()),
     scene("dof", What, &[FOCUSES])
         .default(|| "none, a pinhole".to_owned()),
     scene("dof-method", How, &[FOCUSES, Need::Lens])
@@ -355,7 +357,7 @@ fn default_screen_error() -> String {
 
 /// The default of a reflectance that is another where ambient light is occluded.
 fn occluded(without: Reflectance) -> String {
-    format!("{without}; {} with --ao", Reflectance::OCCLUDED)
+    format!("{without}; {} with --ao or --ssao", Reflectance::OCCLUDED)
 }
 
 fn default_shading() -> String {

@@ -14,10 +14,10 @@ use super::emission::{self, Normals, Shading};
 use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
 use super::medium::Medium;
-use super::occlusion::{is_crossed, open_share};
+use super::occlusion::open_share;
 use super::projection::project;
 use super::shade::{Lighting, LitPoint, normal_from_gradient};
-use super::surface::{Crossing, first_crossing};
+use super::surface::{Crossing, first_crossing, next_change};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
 /// rising and falling are distinguished.
@@ -55,6 +55,9 @@ pub struct RayResult {
     pub kind: Kind,
     /// The share of the light from everywhere that the surface keeps from the hit; 0 where none is asked for.
     pub occlusion: f64,
+    /// How far the ray goes on behind a surface's hit to its next crossing, or to the end of what is seen of it, mm; 0 if it
+    /// was not requested.
+    pub thick_mm: f64,
 }
 
 impl RayResult {
@@ -66,6 +69,7 @@ impl RayResult {
         cells: 0,
         kind: Kind::Nothing,
         occlusion: 0.0,
+        thick_mm: 0.0,
     };
 }
 
@@ -191,7 +195,7 @@ impl<'a> Tracer<'a> {
         let occlusion = self.scene.ambient_occlusion.map_or(0.0, |asked| {
             let point = self.surface_point(field, crossing, interval, ray.dir_world);
             point.map_or(0.0, |point| {
-                self.occlusion(field, &point, iso, asked.distance.get())
+                self.occlusion(field, &point, iso, asked.distance().get())
             })
         });
         let depth_mm = interval.enter_mm + crossing.at_mm;
@@ -214,12 +218,41 @@ impl<'a> Tracer<'a> {
             cells: 0,
             kind: crossing.kind(),
             occlusion,
+            thick_mm: match self.wanted.has(Layer::Thick) {
+                true => self.thick_mm(field, crossing, interval, iso),
+                false => 0.0,
+            },
         }
+    }
+
+    /// How far a ray goes on behind a crossing to the next one, or to the end of its interval, mm.
+    fn thick_mm<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        crossing: &Crossing,
+        interval: &Interval,
+        iso: f64,
+    ) -> f64 {
+        let start_mm = START_VOXELS * self.volume.geometry().smallest_spacing_mm();
+        let from_mm = (crossing.at_mm + start_mm).min(interval.length_mm);
+        let domain = self.volume.dims().domain();
+        let behind = Interval {
+            enter_mm: interval.enter_mm + from_mm,
+            length_mm: interval.length_mm - from_mm,
+            start: std::array::from_fn(|a| {
+                let (low, high) = domain[a];
+                (interval.start[a] + interval.dir[a] * from_mm).clamp(low, high)
+            }),
+            entry: None,
+            ..*interval
+        };
+        let change = next_change(field, &behind, iso, crossing.inside);
+        from_mm - crossing.at_mm + change.unwrap_or(behind.length_mm)
     }
 
     /// The share of the light from everywhere that reaches a point of which this share is occluded.
     fn reached(&self, occlusion: f64) -> f64 {
-        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength.get());
+        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength().get());
         1.0 - strength * occlusion
     }
 
@@ -259,7 +292,7 @@ impl<'a> Tracer<'a> {
             let Some(interval) = self.interval_from(point, dir_world, distance_mm) else {
                 return true;
             };
-            !is_crossed(field, &interval, iso, point.seen_from_inside)
+            next_change(field, &interval, iso, point.seen_from_inside).is_none()
         })
     }
 
@@ -307,6 +340,7 @@ impl<'a> Tracer<'a> {
             cells: projected.walked,
             kind: Kind::Surface,
             occlusion: 0.0,
+            thick_mm: 0.0,
         }
     }
 

@@ -24,6 +24,7 @@ mod picture;
 mod quadrature;
 pub(crate) mod quantities;
 mod sampling;
+mod screen_occlusion;
 mod sparse;
 mod srgb_color;
 pub(crate) mod toml_error;
@@ -54,6 +55,7 @@ pub use quantities::{
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
 };
+pub use screen_occlusion::{Occlusion, SampleCount, ScreenOcclusion};
 pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
 pub use tone::Tone;
@@ -85,7 +87,7 @@ pub struct Scene {
     /// The lights for shading, at most [`Light::MAX_COUNT`].
     pub lights: Vec<Light>,
     /// How much of the light from everywhere a surface keeps from itself; `None`: nothing.
-    pub ambient_occlusion: Option<AmbientOcclusion>,
+    pub ambient_occlusion: Option<Occlusion>,
     /// The lens; `None`: a pinhole.
     pub depth_of_field: Option<DepthOfField>,
     /// How gradients are computed for normals, in the layer and in shading.

@@ -14,6 +14,7 @@ mod room;
 mod sample_check;
 mod sampled;
 mod schedule;
+mod screen;
 mod sparse;
 mod step;
 mod surface;

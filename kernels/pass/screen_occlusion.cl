@@ -7,7 +7,7 @@
 // px: the distance of neighbouring rays across the view axis, mm, at the base plane and its growth per mm. turns: of each
 // pixel of the square the cosines and sines of its slices' angles.
 //
-// Reads the voxels, spans, hit_mm and kind. Writes estimate, and at hits tangents: the geometric normal in world space.
+// Reads the voxels, spans, hit_mm and kind. Writes estimate at hits on the surface.
 #include "lib/find/surface_point.clh"
 #include "lib/light/slice.clh"
 #include "lib/ray/camera.clh"
@@ -18,6 +18,12 @@
 
 // The most by which the sphere around a point looks wider than it is, since its near side is nearer to the eye.
 #define MAX_NEARER 4.0f
+
+// The whole number next to one that is not beyond 2^22: adding 3 * 2^22 leaves no room for fractions.
+static inline Floats nearest_whole(Floats number) { return (number + 12582912.0f) - 12582912.0f; }
+
+// The slope against the tangent plane below which what is seen hides less than a thousandth.
+#define LEAST_SLOPE 0.01f
 
 // What is looked at around a point.
 typedef struct {
@@ -34,53 +40,63 @@ typedef struct {
     Floats sector_shift;
 } Surroundings;
 
-// What of a side of a slice is hidden.
+// What of a side of a slice is hidden, +1 or -1.
 static inline Ints hidden_sectors(const Surroundings *around, Slice slice, float side)
 {
     Ints hidden = INTS(0);
     Floats reach = around->reach * slice.stretch;
+    Floats ahead_i = side * slice.ahead_i;
+    Floats ahead_j = side * slice.ahead_j;
+    Floats column_tau = side * slice.column_tau;
+    Floats row_tau = side * slice.row_tau;
+    Floats ray_tau = side * slice.ray_tau;
     float each = 1.0f / (float)around->steps;
     Floats share = around->shift * each;
-    Floats next = max_of(reach * share * share, FLOATS(1.0f));
     Floats before = FLOATS(0.0f);
+    Floats at = FLOATS(0.0f);
+    Floats next = max_of(reach * share * share, FLOATS(1.0f));
     for (uint n = 0u; n < around->steps; n++) {
-        Floats at = next;
+        before = at;
+        at = next;
         share += each;
         next = max_of(reach * share * share, at + 1.0f);
-        Floats i = (side * at * slice.ahead_i + 12582912.0f) - 12582912.0f;
-        Floats j = (side * at * slice.ahead_j + 12582912.0f) - 12582912.0f;
+        Floats i = nearest_whole(at * ahead_i);
+        Floats j = nearest_whole(at * ahead_j);
         Ints column = around->pixels.i + AS_INTS(i);
         Ints row = around->pixels.j + AS_INTS(j);
         Mask seen = around->hit & column >= 0 & column < (int)around->width & row >= 0 & row < (int)around->height;
         Floats2 span = gather_float2(around->spans, seen ? row * (int)around->width + column : around->pixels.index);
-        // The span's front, and its direction per mm along the view axis, from the point.
+        // The span's front from the point.
         Floats apart = span.x - around->front;
-        Floats mm = around->px.x + around->px.y * span.x;
-        Floats tau = i * slice.column_tau + j * slice.row_tau;
-        Floats nu = i * slice.column_nu + j * slice.row_nu;
-        Floats x = side * (mm * tau + apart * slice.ray_tau);
-        Floats y = mm * nu + apart * slice.ray_nu;
-        Floats dx = side * (slice.ray_tau + around->px.y * tau);
-        Floats dy = slice.ray_nu + around->px.y * nu;
-        // Its part within the sphere.
-        Floats a = 1.0f / (dx * dx + dy * dy);
-        Floats b = (x * dx + y * dy) * a;
-        Floats c = (x * x + y * y - around->radius_mm * around->radius_mm) * a;
-        Floats within = b * b - c;
+        Floats mm = fma(FLOATS(around->px.y), span.x, FLOATS(around->px.x));
+        Floats tau = fma(i, column_tau, j * row_tau);
+        Floats nu = fma(i, slice.column_nu, j * slice.row_nu);
+        Floats x = fma(mm, tau, apart * ray_tau);
+        Floats y = fma(mm, nu, apart * slice.ray_nu);
+        // What is not above the tangent plane, as most of a round vessel, hides nothing.
+        seen = seen & span.y > span.x & y > LEAST_SLOPE * fabs(x);
+        if (!ANY(seen))
+            continue;
+        // Its direction per mm along the view axis, and the part of it within the sphere.
+        Floats dx = fma(FLOATS(around->px.y), tau, ray_tau);
+        Floats dy = fma(FLOATS(around->px.y), nu, slice.ray_nu);
+        Floats a = 1.0f / fma(dx, dx, dy * dy);
+        Floats b = fma(x, dx, y * dy) * a;
+        Floats c = fma(x, x, fma(y, y, FLOATS(-around->radius_mm * around->radius_mm))) * a;
+        Floats within = fma(b, b, -c);
         Floats half_of = sqrt(max_of(within, FLOATS(0.0f)));
         Floats from = max_of(-half_of - b, FLOATS(0.0f));
         Floats to = min_of(half_of - b, span.y - span.x);
         seen = seen & within > 0.0f & to > from;
-        Floats far_x = x + to * dx;
-        Floats far_y = y + to * dy;
-        x += from * dx;
-        y += from * dy;
+        Floats far_x = fma(to, dx, x);
+        Floats far_y = fma(to, dy, y);
+        x = fma(from, dx, x);
+        y = fma(from, dy, y);
         // What ends above the tangent plane is taken to go on half way to the pixels looked at beside it.
-        Mask hangs = far_y > 0.0f;
-        x -= hangs ? 0.5f * (at - before) * mm : FLOATS(0.0f);
-        far_x += hangs ? 0.5f * (next - at) * mm : FLOATS(0.0f);
-        before = at;
-        Ints bits = sectors_between(sector_place(x, y), sector_place(far_x, far_y), side, around->sector_shift);
+        Floats half_mm = far_y > 0.0f ? 0.5f * mm : FLOATS(0.0f);
+        x = fma(before - at, half_mm, x);
+        far_x = fma(next - at, half_mm, far_x);
+        Ints bits = sectors_between(x, y, far_x, far_y, side, around->sector_shift);
         hidden |= seen ? bits : INTS(0);
     }
     return hidden;
@@ -89,14 +105,12 @@ static inline Ints hidden_sectors(const Surroundings *around, Slice slice, float
 kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, float iso, float4 right, float4 down, float2 px,
                              float4 forward, float radius_mm, uint slices, uint steps, const global float2 *turns,
                              const global float2 *sectors, const global float *hit_mm, const global uint *kind,
-                             const global float2 *spans, global float *estimate, global float4 *tangents)
+                             const global float2 *spans, global float *estimate)
 {
     Pixels pixels = tile_pixels(rays);
     Mask hit = pixels.inside & read_ints(kind, pixels) == KIND_SURFACE;
-    if (!ANY(pixels.inside))
-        return;
-    Floats occluded = FLOATS(0.0f);
     if (ANY(hit)) {
+        Floats occluded = FLOATS(0.0f);
         Ray ray = camera_ray(rays, pixels);
         SurfacePoint point = surface_point(voxels, volume, ray, read_floats(hit_mm, pixels), iso, hit);
         ScreenAxes axes = {right, down, forward};
@@ -111,7 +125,7 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
         around.steps = steps;
         around.pixels = pixels;
         around.hit = hit;
-        around.front = gather_float2(spans, pixels.index).x;
+        around.front = read_float2(spans, pixels).x;
         Floats mm = px.x + px.y * around.front;
         Floats nearer = radius_mm * px.y / (mm * per_mm);
         nearer = 1.0f / sqrt(max_of(1.0f - nearer * nearer, FLOATS(1.0f / (MAX_NEARER * MAX_NEARER))));
@@ -122,11 +136,10 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
             Floats2 turned = gather_float2(turns, turn * (int)slices + (int)n);
             Slice slice = slice_at(axes, ray.dir_world, per_mm, point.normal, turned.x, turned.y);
             Ints hidden = hidden_sectors(&around, slice, 1.0f) | hidden_sectors(&around, slice, -1.0f);
-            occluded += hidden_share(slice, hidden, sectors);
+            if (ANY(hidden != 0))
+                occluded += hidden_share(slice, hidden, sectors);
         }
         occluded = min_of(occluded / (float)slices, FLOATS(1.0f));
-        Floats4 normal = {point.normal.x, point.normal.y, point.normal.z, FLOATS(0.0f)};
-        scatter_float4(tangents, pixels, normal);
+        SCATTER(hit, estimate, pixels.index, occluded);
     }
-    SCATTER(pixels.inside, estimate, pixels.index, hit ? occluded : FLOATS(0.0f));
 }

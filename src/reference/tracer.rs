@@ -126,7 +126,8 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Adds the means of a medium that these planes need, which are integrals of their own.
+    /// Adds what these planes need beyond the picture: means of a medium, which are integrals of their own, and how thick a
+    /// surface is.
     #[must_use]
     pub fn wanting(self, wanted: Wanted) -> Self {
         Self { wanted, ..self }

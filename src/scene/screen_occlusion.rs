@@ -27,7 +27,8 @@ pub struct ScreenOcclusion {
 }
 
 impl ScreenOcclusion {
-    const FORM: &'static str = "radius=MM,samples=N,strength=S,thickness=MM, of which only radius is needed";
+    const FORM: &'static str =
+        "radius=MM,samples=N,strength=S,thickness=MM, of which only radius is needed";
 }
 
 impl FromStr for ScreenOcclusion {
@@ -168,7 +169,10 @@ mod tests {
             ("samples=16", "'radius' is missing; write radius=MM,"),
             ("radius=1,rays=2", "'rays' is none of its keys"),
             ("radius=0", "a distance of 0 is out of its domain"),
-            ("radius=1,thickness=-1", "a distance of -1 is out of its domain"),
+            (
+                "radius=1,thickness=-1",
+                "a distance of -1 is out of its domain",
+            ),
             ("radius=1,strength=2", "a share of 2 is out of its domain"),
             (
                 "radius=1,samples=15",
@@ -184,7 +188,9 @@ mod tests {
 
     #[test]
     fn samples_are_slices_of_equal_sides() {
-        for (samples, slices, steps) in [(2, 1, 1), (8, 1, 4), (32, 2, 8), (34, 1, 17), (128, 4, 16)] {
+        for (samples, slices, steps) in
+            [(2, 1, 1), (8, 1, 4), (32, 2, 8), (34, 1, 17), (128, 4, 16)]
+        {
             let count: SampleCount = samples.to_string().parse().unwrap();
             assert_eq!((count.slices(), count.steps()), (slices, steps));
         }

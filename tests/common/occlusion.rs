@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::scene::{
-    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Occlusion, Phong, Picture, RayCount, Refine,
-    Rgb, Sampling, Scene, Share, Tone,
+    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Occlusion, Phong, Picture,
+    RayCount, Refine, Rgb, Sampling, Scene, Share, Tone,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::DVec3;

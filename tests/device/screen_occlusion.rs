@@ -51,9 +51,15 @@ fn wrong(device: &Device) -> Vec<String> {
     let mut check = |case: &Case, toward_eye: DVec3, point, ssao: &str| {
         let scene = on_screen(case, toward_eye, point, 161, ssao);
         let found = accessibility(device, case, &scene);
-        println!("{}, {ssao}: {found:.4}, not {:.4}", case.name, case.accessibility);
+        println!(
+            "{}, {ssao}: {found:.4}, not {:.4}",
+            case.name, case.accessibility
+        );
         if (found - case.accessibility).abs() > 0.05 {
-            wrong.push(format!("{}: {found}, not {}", case.name, case.accessibility));
+            wrong.push(format!(
+                "{}: {found}, not {}",
+                case.name, case.accessibility
+            ));
         }
     };
     // The tubes of the table: from above, or where they hide the point from there, from aside; as far as the picture goes.
@@ -131,7 +137,9 @@ fn nothing_is_in_the_way_of_a_plane() {
             }
             let frame = &on_device(&device, &case.volume, &[scene])[0];
             let occluded = frame.plane(OCCLUSION).unwrap();
-            let worst = occluded.iter().fold(0.0, |worst: f32, share| worst.max(*share));
+            let worst = occluded
+                .iter()
+                .fold(0.0, |worst: f32, share| worst.max(*share));
             assert!(worst < 0.01, "{}, seen at {degrees}: {worst}", case.name);
         }
     }
@@ -175,10 +183,18 @@ fn it_is_near_the_references() {
     let volume = vessels();
     let base = scene(&volume, "radius=8");
     let reference = on_reference(&volume, &base);
-    let texts = ["radius=8", "radius=8,samples=128", "radius=8,thickness=100", "radius=3"];
+    let texts = [
+        "radius=8",
+        "radius=8,samples=128",
+        "radius=8,thickness=100",
+        "radius=3",
+    ];
     let scenes = texts.map(|text| scene(&volume, text));
     let frames = on_device(&device, &volume, &scenes);
-    let found: Vec<[f64; 2]> = frames.iter().map(|frame| error(&reference, frame)).collect();
+    let found: Vec<[f64; 2]> = frames
+        .iter()
+        .map(|frame| error(&reference, frame))
+        .collect();
     println!("{found:?}");
     let [mean, bias] = found[0];
     assert!(mean < 0.04 && bias.abs() < 0.02, "{found:?}");
@@ -360,6 +376,10 @@ fn what_is_smaller_than_a_pixel_is_not_seen() {
         let scene = on_screen(&case, DVec3::Z, center, 30, &format!("radius={radius}"));
         let frame = &on_device(&device, &block, &[scene])[0];
         let shares = frame.plane(OCCLUSION).unwrap();
-        assert_eq!(shares.iter().any(|share| *share > 0.05), is_seen, "{radius}");
+        assert_eq!(
+            shares.iter().any(|share| *share > 0.05),
+            is_seen,
+            "{radius}"
+        );
     }
 }

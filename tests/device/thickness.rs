@@ -48,7 +48,9 @@ fn scene(volume: &Volume) -> Scene {
 /// The share of pixels that both hit whose thicknesses differ by more than a limit.
 fn share_apart(reference: &Frame, frame: &Frame, limit_mm: f32) -> f64 {
     let kinds = reference.plane(KIND).unwrap().iter();
-    let hit = kinds.zip(frame.plane(KIND).unwrap()).map(|(a, b)| a * b != 0);
+    let hit = kinds
+        .zip(frame.plane(KIND).unwrap())
+        .map(|(a, b)| a * b != 0);
     let thick = reference.plane(THICK).unwrap().iter();
     let both: Vec<f32> = (thick.zip(frame.plane(THICK).unwrap()).zip(hit))
         .filter_map(|((a, b), hit)| hit.then_some((a - b).abs()))

@@ -34,6 +34,10 @@ fn a_balls_chords_are_those_of_a_ball() {
         let seen = tracer.wanting(Wanted::NONE.with([Layer::Thick])).cast(ray);
         let chord = 2.0 * (radius * radius - aside * aside).sqrt();
         // The field between voxels is no ball's to the last tenth of a voxel.
-        assert!((seen.thick_mm - chord).abs() < 0.1, "{aside}: {}", seen.thick_mm);
+        assert!(
+            (seen.thick_mm - chord).abs() < 0.1,
+            "{aside}: {}",
+            seen.thick_mm
+        );
     }
 }

@@ -218,8 +218,8 @@ pub const HEMISPHERES: u32 = 64;
 /// Pixels along each side of the squares in which each pixel looks at its surroundings in slices of its own.
 pub const SLICE_SQUARE: u32 = 4;
 
-/// Parts of a slice's half circle, a bit each.
-pub const SECTORS: u32 = 32;
+/// Parts of a slice's half circle, a bit each: words of 32 bits are shifted by less.
+pub const SECTORS: u32 = 31;
 
 /// The mark of a pixel that was cast.
 pub const MARK_CAST: u32 = 1;

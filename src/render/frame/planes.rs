@@ -5,7 +5,7 @@ use crate::extent::ImageSize;
 use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
 use crate::render::abi::MARK_CAST;
-use crate::render::passes::{Compared, Estimates, Run};
+use crate::render::passes::{Compared, Run};
 use crate::render::resources::{DeviceLayers, Spans};
 use crate::scene::Emission;
 use crate::volume::Rescale;
@@ -16,17 +16,17 @@ use super::sample_check::SampleCheck;
 pub struct ScreenPlanes {
     /// The spans of depths that rays spend inside the surface.
     pub spans: Spans,
-    /// What is found from them.
-    pub found: Estimates,
+    /// What is estimated of each hit's occlusion before it is smoothed.
+    pub estimate: Buffer<f32>,
 }
 
 impl ScreenPlanes {
     /// Device memory held by a pixel, in bytes.
-    pub const PIXEL_BYTES: u64 = 8 + 4 + 16;
+    pub const PIXEL_BYTES: u64 = 8 + 4;
 
     fn bytes(&self) -> u64 {
-        let Self { spans, found } = self;
-        spans.depths.bytes() + found.occlusion.bytes() + found.tangents.bytes()
+        let Self { spans, estimate } = self;
+        spans.depths.bytes() + estimate.bytes()
     }
 }
 

@@ -46,7 +46,9 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         Some(Occlusion::Screen(_)) => ScreenPlanes::PIXEL_BYTES,
         Some(Occlusion::Rays(_)) | None => 0,
     };
-    let of_lens = scene.depth_of_field.map_or(0, |_| pixels * (RAY + of_screen));
+    let of_lens = scene
+        .depth_of_field
+        .map_or(0, |_| pixels * (RAY + of_screen));
     let of_lens = of_lens + pixels * of_screen;
     if rays > 1 {
         return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::frame::Layer;
 use crate::render::abi::SurfaceCast;
 use crate::render::passes::{
-    Estimates, Run, Surroundings, Thickness, screen_occlusion, smooth_occlusion, thickness,
+    Run, Surroundings, Thickness, screen_occlusion, smooth_occlusion, thickness,
 };
 use crate::render::resources::{Screen, Slices, Spans};
 use crate::scene::ScreenOcclusion;
@@ -44,10 +44,7 @@ impl ScreenPasses {
         let screen = Screen::of(&view.scene.camera, view.footprint(run)?);
         Ok(ScreenPlanes {
             spans: Spans::new(run.device, &run.rays, screen)?,
-            found: Estimates {
-                occlusion: run.plane("estimates of occlusion", 0.0)?,
-                tangents: run.plane("geometric normals", [0.0; 4])?,
-            },
+            estimate: run.plane("estimates of occlusion", 0.0)?,
         })
     }
 
@@ -72,7 +69,7 @@ impl ScreenPasses {
     ) -> Result<()> {
         let Planes {
             hit_mm: Some(hit_mm),
-            screen: Some(ScreenPlanes { spans, found }),
+            screen: Some(ScreenPlanes { spans, estimate }),
             layers,
             ..
         } = planes
@@ -85,8 +82,8 @@ impl ScreenPasses {
             radius_mm,
         };
         let seen = (&*spans, &*hit_mm, &*layers);
-        screen_occlusion(run, view.inputs, cast.iso, around, seen, found)?;
-        smooth_occlusion(run, radius_mm, spans, found, layers)
+        screen_occlusion(run, view.inputs, cast.iso, around, seen, estimate)?;
+        smooth_occlusion(run, radius_mm, spans, estimate, layers)
     }
 }
 

@@ -115,7 +115,7 @@ impl<'a> SurfacePasses<'a> {
         let is_compared = scene
             .sparse
             .is_some_and(|sparse| sparse.refill == Refill::Flood);
-        if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
+        if wanted.has(Layer::Normal) || self.is_shaded || is_compared || self.screen().is_some() {
             layers.push(Layer::Normal);
         }
         if self.occlusion.is_some() {

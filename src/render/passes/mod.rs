@@ -67,7 +67,7 @@ pub use mean_of_samples::{SampledPixels, mean_of_samples};
 pub use occlusion_between::occlusion_between;
 pub use run::{Passes, Run};
 pub use sample_field::sample_field;
-pub use screen_occlusion::{Estimates, Surroundings, screen_occlusion};
+pub use screen_occlusion::{Surroundings, screen_occlusion};
 pub use shade_surface::{Lit, shade_surface};
 pub use smooth_occlusion::smooth_occlusion;
 pub use sum_counts::sum_counts;

@@ -28,7 +28,9 @@ pub fn occlusion_between(
         ..
     } = &run.rays
     else {
-        return Err(Error::failed("only a pixel with several rays has some between"));
+        return Err(Error::failed(
+            "only a pixel with several rays has some between",
+        ));
     };
     let args = Args::new()
         .value("rays", grid)

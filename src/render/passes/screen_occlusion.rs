@@ -17,14 +17,6 @@ pub struct Surroundings<'a> {
     pub radius_mm: f32,
 }
 
-/// What is found of each hit before it is smoothed: an estimate of its occlusion, and its geometric normal.
-pub struct Estimates {
-    /// The occlusion.
-    pub occlusion: Buffer<f32>,
-    /// The unit normal, world space; of hits alone.
-    pub tangents: Buffer<[f32; 4]>,
-}
-
 /// Estimates the share of the light from everywhere that the surface keeps from each hit of the picture. Reads the kind.
 pub fn screen_occlusion(
     run: &mut Run,
@@ -32,7 +24,7 @@ pub fn screen_occlusion(
     iso: f32,
     around: Surroundings,
     seen: (&Spans, &Buffer<f32>, &DeviceLayers),
-    found: &mut Estimates,
+    estimate: &mut Buffer<f32>,
 ) -> Result<()> {
     let (spans, hit_mm, layers) = seen;
     let args = Args::new()
@@ -49,7 +41,6 @@ pub fn screen_occlusion(
         .read("hit_mm", hit_mm)
         .with(layers.reading(&[Layer::Kind]))
         .read("spans", &spans.depths)
-        .write("estimate", &mut found.occlusion)
-        .write("tangents", &mut found.tangents);
+        .write("estimate", estimate);
     run.screen("screen_occlusion", run.defines(), args)
 }

@@ -2,18 +2,18 @@
 
 use crate::error::Result;
 use crate::frame::Layer;
+use crate::gpu::Buffer;
 use crate::render::resources::{DeviceLayers, Spans};
 
 use super::run::Run;
-use super::screen_occlusion::Estimates;
 
 /// The occlusion of each hit of the picture: the mean of the estimates around it that lie near its tangent plane and nearer
-/// than the radius. Reads the kind.
+/// than the radius. Reads the normal and the kind.
 pub fn smooth_occlusion(
     run: &mut Run,
     radius_mm: f32,
     spans: &Spans,
-    found: &Estimates,
+    estimate: &Buffer<f32>,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
     let args = run
@@ -21,9 +21,8 @@ pub fn smooth_occlusion(
         .with(&spans.screen)
         .value("radius_mm", &radius_mm)
         .read("spans", &spans.depths)
-        .read("estimate", &found.occlusion)
-        .read("tangents", &found.tangents)
-        .with(layers.reading(&[Layer::Kind]))
+        .read("estimate", estimate)
+        .with(layers.reading(&[Layer::Normal, Layer::Kind]))
         .with(layers.writing(&[Layer::Occlusion]));
     run.screen("smooth_occlusion", run.defines(), args)
 }

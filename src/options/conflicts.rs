@@ -97,6 +97,16 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "leave one of the two out",
     },
     Contradiction {
+        is_in: |all| all.effects.ssao.is_some() && all.sampling.filter == Some(Filter::Nearest),
+        sentence: "'ssao' cannot be combined with 'filter' nearest, whose surface is the voxels' faces",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
+        is_in: |all| all.effects.ao.is_some() && all.effects.ssao.is_some(),
+        sentence: "'ao' cannot be combined with 'ssao': both find how much of the light from everywhere is occluded",
+        hint: "leave one of the two out: 'ao' follows rays, 'ssao' looks at the picture",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -231,13 +241,22 @@ pub(super) const REPLACED: &[Replaced] = &[
     },
     Replaced {
         by: |flags, _| flags.sampling.filter == Some(Filter::Nearest),
-        options: &["ao"],
+        options: &["ao", "ssao"],
     },
     Replaced {
         by: |flags, file| {
-            flags.effects.ao.is_some() && file.sampling.filter == Some(Filter::Nearest)
+            flags.effects.occlusion().is_some() && file.sampling.filter == Some(Filter::Nearest)
         },
         options: &["filter"],
+    },
+    // One way to find what is occluded replaces the other.
+    Replaced {
+        by: |flags, _| flags.effects.ao.is_some(),
+        options: &["ssao"],
+    },
+    Replaced {
+        by: |flags, _| flags.effects.ssao.is_some(),
+        options: &["ao"],
     },
     Replaced {
         by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),

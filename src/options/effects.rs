@@ -3,8 +3,8 @@
 use super::group::group;
 use super::text_form::text_form;
 use crate::scene::{
-    AmbientOcclusion, DepthOfField, DofMethod, LightSizeDeg, Phong, Reflectance, ShadowMethod,
-    Shadows,
+    AmbientOcclusion, DepthOfField, DofMethod, LightSizeDeg, Occlusion, Phong, Reflectance,
+    ScreenOcclusion, ShadowMethod, Shadows,
 };
 
 text_form!(
@@ -12,6 +12,7 @@ text_form!(
     DepthOfField,
     DofMethod,
     LightSizeDeg,
+    ScreenOcclusion,
     ShadowMethod
 );
 
@@ -35,6 +36,16 @@ group! {
         /// The angle in degrees that each light fills, from 0 to 90: shadows of a surface get soft edges
         #[arg(long, value_name = "DEG")]
         light_size: LightSizeDeg,
+
+        /// Ambient occlusion within MM estimated from the picture alone: from N pixels around each, an even number
+        /// up to 1024 [default of N: 32]. What is seen is as thick as it is (layer thick), or MM with thickness=MM;
+        /// what lies behind it or outside the picture occludes nothing
+        #[arg(
+            long,
+            value_name = "radius=MM,samples=N,strength=S",
+            allow_hyphen_values = true
+        )]
+        ssao: ScreenOcclusion,
 
         /// Depth of field: a lens of this diameter in place of a pinhole, or cones of this half-angle of an
         /// orthographic camera (aperture=1deg), in focus at a distance in mm along the view axis, at the
@@ -74,11 +85,17 @@ impl EffectOptions {
         })
     }
 
+    /// Returns what dims the light from everywhere, and how it is found.
+    pub(super) fn occlusion(&self) -> Option<Occlusion> {
+        let of_screen = self.ssao.map(Occlusion::Screen);
+        self.ao.map(Occlusion::Rays).or(of_screen)
+    }
+
     /// Returns how light is reflected where nothing else is given: where light from everywhere may be occluded there is more
     /// of it.
     pub(super) fn phong(&self) -> Phong {
         let default = Phong::default();
-        match self.ao {
+        match self.occlusion() {
             None => default,
             Some(_) => Phong {
                 ambient: Reflectance::OCCLUDED,

@@ -247,6 +247,8 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| "none".to_owned()),
     scene("light-size", What, &[LIGHT, Need::Shading, Need::Shadows])
         .default(text::<LightSizeDeg>),
+    scene("ssao", What, &[OCCLUDES, Need::Shading])
+        .default(|| "none".to_owned()),
     scene("dof", What, &[FOCUSES])
         .default(|| "none, a pinhole".to_owned()),
     scene("dof-method", How, &[FOCUSES, Need::Lens])
@@ -361,7 +363,7 @@ fn default_screen_error() -> String {
 
 /// The default of a reflectance that is another where ambient light is occluded.
 fn occluded(without: Reflectance) -> String {
-    format!("{without}; {} with --ao", Reflectance::OCCLUDED)
+    format!("{without}; {} with --ao or --ssao", Reflectance::OCCLUDED)
 }
 
 fn default_shading() -> String {

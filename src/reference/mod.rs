@@ -34,7 +34,7 @@ use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{
     CERTIFICATE, COC, COVERAGE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layer, Layers, NORMAL,
-    OCCLUSION, PlaneEntry, STEPS, VALUE, VISIBILITY, Wanted,
+    OCCLUSION, PlaneEntry, STEPS, THICK, VALUE, VISIBILITY, Wanted,
 };
 use crate::progress::Progress;
 use crate::scene::{DepthOfField, LensPoint, Picture, RayCount, Scene};
@@ -260,6 +260,7 @@ fn fill(frame: &mut Frame, pixel: usize, seen: &PixelResult, scene: &Scene) {
     set(layers, COVERAGE, pixel, seen.coverage as f32);
     set(layers, OCCLUSION, pixel, result.occlusion as f32);
     set(layers, VISIBILITY, pixel, result.visibility as f32);
+    set(layers, THICK, pixel, result.thick_mm as f32);
     set(layers, COC, pixel, seen.circle_px as f32);
     set(
         layers,

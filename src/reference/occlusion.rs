@@ -4,12 +4,6 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::volume::Voxel;
-
-use super::cells::Walk;
-use super::field::{Field, bounds};
-use super::interval::Interval;
-
 /// Rays over a hemisphere.
 const RAYS: u32 = 1024;
 
@@ -53,20 +47,6 @@ pub fn visible_share(toward: DVec3, radius: f64, mut is_open: impl FnMut(DVec3) 
         open += u32::from(is_open(dir));
     }
     f64::from(open) / f64::from(LIGHT_RAYS)
-}
-
-/// Whether "Φ ≥ iso" changes on an interval that begins where it is `inside`.
-pub fn is_crossed<T: Voxel>(field: &Field<T>, interval: &Interval, iso: f64, inside: bool) -> bool {
-    Walk::new(field.lattice, interval).any(|segment| {
-        let corners = field.corners(segment.cell).map(|value| value - iso);
-        let (low, high) = bounds(&corners);
-        if inside && low >= 0.0 || !inside && high < 0.0 {
-            return false;
-        }
-        let above = Field::<T>::along(&corners, &segment);
-        let ends = above.monotone_ends();
-        ends.iter().any(|&s| (above.at(s) >= 0.0) != inside)
-    })
 }
 
 #[cfg(test)]

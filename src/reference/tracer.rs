@@ -17,10 +17,10 @@ use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
 use super::leaving::Surroundings;
 use super::medium::Medium;
-use super::occlusion::{is_crossed, open_share, visible_share};
+use super::occlusion::{open_share, visible_share};
 use super::projection::project;
 use super::shade::{Lighting, LitPoint, normal_from_gradient};
-use super::surface::{Crossing, first_crossing};
+use super::surface::{Crossing, first_crossing, next_change};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
 /// rising and falling are distinguished.
@@ -80,6 +80,9 @@ pub struct RayResult {
     /// The share of the first light that reaches the hit, or of a medium the mean, if it was requested; 0 where no shadows
     /// are asked for.
     pub visibility: f64,
+    /// How far the ray goes on behind a surface's hit to its next crossing, or to the end of what is seen of it, mm; 0 if it
+    /// was not requested.
+    pub thick_mm: f64,
 }
 
 impl RayResult {
@@ -92,6 +95,7 @@ impl RayResult {
         kind: Kind::Nothing,
         occlusion: 0.0,
         visibility: 0.0,
+        thick_mm: 0.0,
     };
 }
 
@@ -148,7 +152,8 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Adds the means of a medium that these planes need, which are integrals of their own.
+    /// Adds what these planes need beyond the picture: means of a medium, which are integrals of their own, and how thick a
+    /// surface is.
     #[must_use]
     pub fn wanting(self, wanted: Wanted) -> Self {
         Self { wanted, ..self }
@@ -224,7 +229,7 @@ impl<'a> Tracer<'a> {
             iso,
         };
         let occlusion = (self.scene.ambient_occlusion).map_or(0.0, |asked| {
-            self.occlusion(field, &before, asked.distance.get())
+            self.occlusion(field, &before, asked.distance().get())
         });
         let reached = |from: LightFrom| {
             self.scene.shadows.map_or(1.0, |shadows| {
@@ -253,6 +258,10 @@ impl<'a> Tracer<'a> {
             kind: crossing.kind(),
             occlusion,
             visibility: self.first_lamp().map_or(0.0, reached),
+            thick_mm: match self.wanted.has(Layer::Thick) {
+                true => self.thick_mm(field, crossing, interval, iso),
+                false => 0.0,
+            },
         }
     }
 
@@ -265,9 +274,34 @@ impl<'a> Tracer<'a> {
         lighting.lamps().first().map(|lamp| lamp.from)
     }
 
+    /// How far a ray goes on behind a crossing to the next one, or to the end of its interval, mm.
+    fn thick_mm<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        crossing: &Crossing,
+        interval: &Interval,
+        iso: f64,
+    ) -> f64 {
+        let start_mm = self.surroundings().start_mm;
+        let from_mm = (crossing.at_mm + start_mm).min(interval.length_mm);
+        let domain = self.volume.dims().domain();
+        let behind = Interval {
+            enter_mm: interval.enter_mm + from_mm,
+            length_mm: interval.length_mm - from_mm,
+            start: std::array::from_fn(|a| {
+                let (low, high) = domain[a];
+                (interval.start[a] + interval.dir[a] * from_mm).clamp(low, high)
+            }),
+            entry: None,
+            ..*interval
+        };
+        let change = next_change(field, &behind, iso, crossing.inside);
+        from_mm - crossing.at_mm + change.unwrap_or(behind.length_mm)
+    }
+
     /// The share of the light from everywhere that reaches a point of which this share is occluded.
     fn reached(&self, occlusion: f64) -> f64 {
-        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength.get());
+        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength().get());
         1.0 - strength * occlusion
     }
 
@@ -340,7 +374,9 @@ impl<'a> Tracer<'a> {
     ) -> bool {
         let around = self.surroundings();
         let interval = around.interval_from(point.index, dir_world, around.start_mm, distance_mm);
-        interval.is_none_or(|interval| !is_crossed(field, &interval, iso, point.seen_from_inside))
+        interval.is_none_or(|interval| {
+            next_change(field, &interval, iso, point.seen_from_inside).is_none()
+        })
     }
 
     fn surroundings(&self) -> Surroundings<'_> {

@@ -24,6 +24,7 @@ mod picture;
 mod quadrature;
 pub(crate) mod quantities;
 mod sampling;
+mod screen_occlusion;
 mod shadows;
 mod sparse;
 mod srgb_color;
@@ -56,6 +57,7 @@ pub use quantities::{
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
 };
+pub use screen_occlusion::{Occlusion, SampleCount, ScreenOcclusion};
 pub use shadows::{GridSide, ShadowMethod, Shadows};
 pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
@@ -88,7 +90,7 @@ pub struct Scene {
     /// The lights for shading, at most [`Light::MAX_COUNT`].
     pub lights: Vec<Light>,
     /// How much of the light from everywhere a surface keeps from itself; `None`: nothing.
-    pub ambient_occlusion: Option<AmbientOcclusion>,
+    pub ambient_occlusion: Option<Occlusion>,
     /// How the lights are kept from points of the volume by the volume itself; `None`: they are not.
     pub shadows: Option<Shadows>,
     /// The lens; `None`: a pinhole.

@@ -16,6 +16,8 @@ mod jitter;
 mod lens;
 mod lights;
 mod metamorphic;
+#[path = "../common/mutated.rs"]
+mod mutated;
 mod occlusion;
 #[path = "../common/occlusion.rs"]
 mod occlusion_cases;
@@ -25,7 +27,11 @@ mod recon;
 mod refinement;
 mod sampling_alone;
 mod screen_error;
+mod screen_occlusion;
 mod shadows;
+#[path = "../common/slab.rs"]
+mod slab;
 mod sparse;
 mod termination;
+mod thickness;
 mod voxel_images;

@@ -444,6 +444,17 @@ fn the_switches_are_read_from_the_kernels() {
             ("VISIBILITY", 2)
         ])
     );
+    assert_eq!(
+        of("pass/thickness.cl"),
+        named(&[
+            ("CERTIFICATE", 3),
+            ("LANES", 3),
+            ("LAYERS", 2),
+            ("MARCHED", 2),
+            ("RAYS", 4),
+            ("SPANS", 2)
+        ])
+    );
     assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
     // Work-items that are no tiles of rays have one number of lanes.
     assert_eq!(

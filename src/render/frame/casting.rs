@@ -34,6 +34,7 @@ fn cast_through_pinhole(run: &mut Run, view: &View, is_whole: bool) -> Result<Pl
     }
     let mut planes = schedule.planes(run)?;
     schedule.cast(run, &mut planes)?;
+    schedule.finish(run, &mut planes)?;
     planes.rays_per_round.push(run.rays.count() as u64);
     Ok(planes)
 }

@@ -85,6 +85,7 @@ impl LensPictures<'_> {
         let source = RaySource::through_lens(camera, *size, self.view.volume, point, place);
         let pinhole = std::mem::replace(&mut run.rays, source);
         self.schedule.cast(run, seen)?;
+        self.schedule.finish(run, seen)?;
         run.rays = pinhole;
         let share = 1.0 / self.rays.get() as f32;
         add_picture(run, share, n == 0, &seen.color, &mut planes.color)

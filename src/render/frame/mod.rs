@@ -15,6 +15,7 @@ mod room;
 mod sample_check;
 mod sampled;
 mod schedule;
+mod screen;
 mod sparse;
 mod step;
 mod surface;

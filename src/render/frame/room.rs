@@ -5,8 +5,10 @@ use crate::extent::{Dims, ImageSize};
 use crate::frame::{Layer, Wanted};
 use crate::gpu::{DeviceInfo, DeviceKind};
 use crate::render::resources::DeviceLayers;
-use crate::scene::Scene;
+use crate::scene::{Occlusion, Scene};
 use crate::volume::VoxelType;
+
+use super::planes::ScreenPlanes;
 
 /// Rays that are cast at a time where a pixel has many: their planes take some tens of megabytes.
 pub const RAYS_AT_A_TIME: usize = 1 << 20;
@@ -40,7 +42,14 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         scene.size.pixels() as u64,
         u64::from(scene.anti_aliasing.rays()),
     );
-    let of_lens = scene.depth_of_field.map_or(0, |_| pixels * RAY);
+    let of_screen = match scene.ambient_occlusion {
+        Some(Occlusion::Screen(_)) => ScreenPlanes::PIXEL_BYTES,
+        Some(Occlusion::Rays(_)) | None => 0,
+    };
+    let of_lens = scene
+        .depth_of_field
+        .map_or(0, |_| pixels * (RAY + of_screen));
+    let of_lens = of_lens + pixels * of_screen;
     if rays > 1 {
         return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
     }
@@ -131,7 +140,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (3 * 16 + 11 * 4);
+        let needs = 100 * (3 * 16 + 12 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

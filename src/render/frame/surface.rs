@@ -7,16 +7,19 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, TowardLights, ambient_occlusion, cast_shadows,
-    cast_surface, exact_surface, interpolate_hits, mark_uncertain, shade_surface, surface_normal,
+    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights, ambient_occlusion,
+    cast_shadows, cast_surface, exact_surface, interpolate_hits, mark_uncertain, occlusion_between,
+    shade_surface, surface_normal,
 };
-use crate::render::resources::RaySets;
+use crate::render::resources::{RaySets, RaySource};
 use crate::scene::{
-    AmbientOcclusion, Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError, ShadedFrom,
+    AmbientOcclusion, Filter, Occlusion, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError,
+    ShadedFrom,
 };
 
-use super::planes::Planes;
+use super::planes::{Centers, Planes};
 use super::schedule::Schedule;
+use super::screen::{ScreenPasses, find_thickness};
 use super::view::View;
 
 /// How a scene's surface is found and seen, but for its iso value.
@@ -37,15 +40,37 @@ pub struct SurfacePasses<'a> {
     cast: SurfaceCast,
     light: Shading,
     is_shaded: bool,
-    occlusion: Option<Occlusion>,
+    occlusion: Option<FoundBy>,
     /// The directions about the middle of each light, where shadows are cast.
     shadows: Option<RaySets>,
 }
 
-/// Ambient occlusion with what its pass reads.
-struct Occlusion {
-    asked: AmbientOcclusion,
-    directions: RaySets,
+/// How ambient occlusion is found, with what the passes read.
+enum FoundBy {
+    Rays {
+        asked: AmbientOcclusion,
+        directions: RaySets,
+    },
+    Screen(ScreenPasses),
+}
+
+impl FoundBy {
+    fn new(run: &Run, asked: Occlusion) -> Result<Self> {
+        Ok(match asked {
+            Occlusion::Rays(asked) => Self::Rays {
+                asked,
+                directions: RaySets::over_hemisphere(run.device, asked.rays.get())?,
+            },
+            Occlusion::Screen(asked) => Self::Screen(ScreenPasses::new(run, asked)?),
+        })
+    }
+
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::Rays { directions, .. } => directions.bytes(),
+            Self::Screen(passes) => passes.bytes(),
+        }
+    }
 }
 
 /// The rays toward each light from a hit, where the light has a size.
@@ -66,18 +91,13 @@ impl<'a> SurfacePasses<'a> {
             phong: surface.phong,
             shaded_from: ShadedFrom::default(),
         };
-        let occlusion = |asked: AmbientOcclusion| {
-            Ok(Occlusion {
-                asked,
-                directions: RaySets::over_hemisphere(run.device, asked.rays.get())?,
-            })
-        };
         let scene = view.scene;
         let is_shaded = surface.phong.is_some();
         let shadows = scene.shadows.filter(|_| is_shaded).map(|shadows| {
             let radius = 0.5 * shadows.light_size.get().to_radians();
             RaySets::over_light(run.device, SOFT_RAYS, radius)
         });
+        let occlusion = |asked| FoundBy::new(run, asked);
         Ok(Self {
             view,
             cast: surface_cast(view, iso, surface),
@@ -107,7 +127,7 @@ impl<'a> SurfacePasses<'a> {
         let is_compared = scene
             .sparse
             .is_some_and(|sparse| sparse.refill == Refill::Flood);
-        if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
+        if wanted.has(Layer::Normal) || self.is_shaded || is_compared || self.screen().is_some() {
             layers.push(Layer::Normal);
         }
         if self.occlusion.is_some() {
@@ -115,6 +135,9 @@ impl<'a> SurfacePasses<'a> {
         }
         if self.shadows.is_some() && wanted.has(Layer::Visibility) {
             layers.push(Layer::Visibility);
+        }
+        if wanted.has(Layer::Thick) {
+            layers.push(Layer::Thick);
         }
         layers
     }
@@ -124,34 +147,54 @@ impl Schedule for SurfacePasses<'_> {
     fn planes(&self, run: &Run) -> Result<Planes> {
         let mut planes = Planes::new(run, &self.layers())?;
         planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
-        let occlusion = self.occlusion.as_ref();
-        planes.other_bytes += occlusion.map_or(0, |occlusion| occlusion.directions.bytes());
         if let Some(directions) = &self.shadows {
             planes.lights_reached = Some(run.plane("plane of lights", [0.0; 4])?);
             planes.other_bytes += directions.bytes();
         }
+        if let Some(screen) = self.screen()
+            && run.rays.picture().is_some()
+        {
+            planes.screen = Some(screen.planes(run, self.view)?);
+        }
+        planes.other_bytes += self.occlusion.as_ref().map_or(0, FoundBy::bytes);
         Ok(planes)
     }
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
-        let Self { view, .. } = *self;
-        let sampling = &view.scene.sampling;
-        let Planes {
+        self.find_hits(run, planes)?;
+        find_thickness(run, self.thickness(), planes)?;
+        self.show(run, planes)
+    }
+
+    fn finish(&self, run: &mut Run, planes: &mut Planes) -> Result<bool> {
+        let Some(screen) = self.screen() else {
+            return Ok(false);
+        };
+        screen.find(run, self.view, &self.cast, planes)?;
+        self.shade(run, true, planes)?;
+        Ok(true)
+    }
+
+    fn needs_centers(&self) -> bool {
+        self.screen().is_some()
+    }
+
+    fn cast_between(&self, run: &mut Run, centers: Centers, planes: &mut Planes) -> Result<()> {
+        let Some(of_centers) = centers.screen else {
+            return self.cast(run, planes);
+        };
+        self.find_hits(run, planes)?;
+        self.find_normals(run, planes)?;
+        if let Planes {
             hit_mm: Some(hit_mm),
             layers,
             ..
         } = planes
-        else {
-            return Ok(());
-        };
-        let (inputs, cast) = (view.inputs, &self.cast);
-        match sampling.method {
-            SamplingMethod::Fixed => {
-                cast_surface(run, inputs, cast, sampling.recon, hit_mm, layers)?
-            }
-            SamplingMethod::Exact => exact_surface(run, inputs, cast, hit_mm, layers)?,
+        {
+            let known = (&of_centers.spans, centers.layers);
+            occlusion_between(run, known, hit_mm, layers)?;
         }
-        self.show(run, planes)
+        self.shade(run, true, planes)
     }
 
     /// Fixed steps are not held against the surface itself: of them only emptiness is proven.
@@ -203,52 +246,159 @@ impl Schedule for SurfacePasses<'_> {
         {
             interpolate_hits(run, self.cast.iso, marks, hit_mm, layers)?;
         }
+        find_thickness(run, self.thickness(), planes)?;
         self.show(run, planes)
     }
 }
 
 impl SurfacePasses<'_> {
-    /// Finds the normals of the rays' hits, what is occluded of them and what reaches them of lights, where those are needed,
-    /// and shades them.
-    fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+    /// The passes that estimate occlusion from the picture, where it is found so.
+    fn screen(&self) -> Option<&ScreenPasses> {
+        match &self.occlusion {
+            Some(FoundBy::Screen(passes)) => Some(passes),
+            _ => None,
+        }
+    }
+
+    /// How thick what is hit is.
+    fn thickness(&self) -> Thickness<'_> {
+        let exact = Thickness::Exact {
+            inputs: self.view.inputs,
+            cast: &self.cast,
+            start_mm: (START_VOXELS * self.view.volume.geometry().smallest_spacing_mm()) as f32,
+        };
+        match self.screen() {
+            Some(screen) if !self.view.wanted.has(Layer::Thick) => screen.thickness(exact),
+            _ => exact,
+        }
+    }
+
+    fn find_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Self { view, cast, .. } = self;
+        let sampling = &view.scene.sampling;
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
-            lights_reached,
-            color,
             ..
         } = planes
         else {
             return Ok(());
         };
-        let inputs = self.view.inputs;
-        if layers.has(Layer::Normal) {
-            surface_normal(run, inputs, self.view.gradient, hit_mm, layers)?;
+        match sampling.method {
+            SamplingMethod::Fixed => {
+                cast_surface(run, view.inputs, cast, sampling.recon, hit_mm, layers)
+            }
+            SamplingMethod::Exact => exact_surface(run, view.inputs, cast, hit_mm, layers),
         }
+    }
+
+    fn find_normals(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
+        if !layers.has(Layer::Normal) {
+            return Ok(());
+        }
+        surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)
+    }
+
+    /// Finds the normals of the rays' hits and what is occluded of them, where those are needed and can be known, and shades
+    /// them; a whole picture whose occlusion is estimated from itself is shaded when that is known.
+    fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        self.find_normals(run, planes)?;
+        match &self.occlusion {
+            None => self.shade(run, false, planes),
+            Some(FoundBy::Screen(_)) => match run.rays {
+                RaySource::Camera { .. } => Ok(()),
+                _ => self.shade(run, false, planes),
+            },
+            Some(FoundBy::Rays { asked, directions }) => {
+                self.occlude(run, *asked, directions, planes)?;
+                self.shade(run, true, planes)
+            }
+        }
+    }
+
+    /// Finds what is occluded of the hits by rays that leave them.
+    fn occlude(
+        &self,
+        run: &mut Run,
+        asked: AmbientOcclusion,
+        directions: &RaySets,
+        planes: &mut Planes,
+    ) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
         let volume = self.view.volume;
         let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
         let scale = covector_scale(volume);
-        if let Some(Occlusion { asked, directions }) = &self.occlusion {
-            let leaving = Leaving {
-                directions,
-                t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
-            };
-            ambient_occlusion(run, inputs, &self.cast, leaving, hit_mm, layers)?;
-        }
-        if let (Some(directions), Some(reached)) = (&self.shadows, lights_reached.as_mut()) {
-            let toward = TowardLights {
-                shading: &self.light,
-                directions,
-                t_min: (start_mm * scale) as f32,
-            };
-            cast_shadows(run, inputs, &self.cast, toward, hit_mm, layers, reached)?;
-        }
+        let leaving = Leaving {
+            directions,
+            t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
+        };
+        ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)
+    }
+
+    /// Finds what reaches the hits of each light, where shadows are cast.
+    fn cast_shadows(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let (
+            Some(directions),
+            Planes {
+                hit_mm: Some(hit_mm),
+                layers,
+                lights_reached: Some(lights_reached),
+                ..
+            },
+        ) = (&self.shadows, planes)
+        else {
+            return Ok(());
+        };
+        let volume = self.view.volume;
+        let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
+        let toward = TowardLights {
+            shading: &self.light,
+            directions,
+            t_min: (start_mm * covector_scale(volume)) as f32,
+        };
+        let inputs = self.view.inputs;
+        cast_shadows(
+            run,
+            inputs,
+            &self.cast,
+            toward,
+            hit_mm,
+            layers,
+            lights_reached,
+        )
+    }
+
+    /// Shades the hits, by what reaches them of each light and, as far as their occlusion `is_known`, by that too.
+    fn shade(&self, run: &mut Run, is_known: bool, planes: &mut Planes) -> Result<()> {
+        self.cast_shadows(run, planes)?;
+        let Planes {
+            hit_mm,
+            layers,
+            lights_reached,
+            color,
+            ..
+        } = planes;
+        let asked = self.view.scene.ambient_occlusion.filter(|_| is_known);
         let lit = Lit {
             shading: &self.light,
-            hit_mm: self.is_shaded.then_some(&*hit_mm),
+            hit_mm: hit_mm.as_ref().filter(|_| self.is_shaded),
             lights_reached: lights_reached.as_ref(),
-            occlusion: (self.occlusion.as_ref())
-                .map(|occlusion| occlusion.asked.strength.get() as f32),
+            occlusion: asked.map(|asked| asked.strength().get() as f32),
         };
         shade_surface(run, lit, layers, color)
     }

@@ -1,5 +1,5 @@
 //! What lies on the device for many frames or for one: voxels, the octree's tables, the transfer function,
-//! clip planes, gradients, rays, sets of directions, planes of layers.
+//! clip planes, gradients, rays, sets of directions and slices, planes of layers, spans of depths.
 
 mod clip;
 mod device_transfer;
@@ -9,6 +9,8 @@ mod held_volume;
 mod layers;
 mod ray_sets;
 mod rays;
+mod slices;
+mod spans;
 mod transfer;
 mod volume;
 mod voxels;
@@ -21,6 +23,8 @@ pub use held_volume::HeldVolume;
 pub use layers::DeviceLayers;
 pub use ray_sets::RaySets;
 pub use rays::{IndexRay, RaySource};
+pub use slices::Slices;
+pub use spans::{Screen, Spans};
 pub use transfer::{Knots, unit_absorption};
 pub use volume::DeviceVolume;
 pub use voxels::DeviceVoxels;

@@ -1,0 +1,109 @@
+//! Ambient occlusion estimated from the picture: the passes behind the casts of `iso`.
+
+use crate::error::Result;
+use crate::frame::Layer;
+use crate::render::abi::SurfaceCast;
+use crate::render::passes::{
+    Run, Surroundings, Thickness, screen_occlusion, smooth_occlusion, thickness,
+};
+use crate::render::resources::{Screen, Slices, Spans};
+use crate::scene::ScreenOcclusion;
+
+use super::planes::{Planes, ScreenPlanes};
+use super::view::View;
+
+/// Estimates ambient occlusion from the picture.
+pub struct ScreenPasses {
+    asked: ScreenOcclusion,
+    slices: Slices,
+}
+
+impl ScreenPasses {
+    /// The passes, with their tables uploaded.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn new(run: &Run, asked: ScreenOcclusion) -> Result<Self> {
+        let (slices, steps) = (asked.samples.slices(), asked.samples.steps());
+        Ok(Self {
+            asked,
+            slices: Slices::upload(run.device, slices, steps)?,
+        })
+    }
+
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.slices.bytes()
+    }
+
+    /// Room for what the passes hand on.
+    ///
+    /// # Errors
+    /// The device has no room; the rays belong to no picture.
+    pub fn planes(&self, run: &Run, view: &View) -> Result<ScreenPlanes> {
+        let screen = Screen::of(&view.scene.camera, view.footprint(run)?);
+        Ok(ScreenPlanes {
+            spans: Spans::new(run.device, &run.rays, screen)?,
+            estimate: run.plane("estimates of occlusion", 0.0)?,
+        })
+    }
+
+    /// How thick what is hit is taken to be; `exact`: as it is.
+    pub fn thickness<'a>(&self, exact: Thickness<'a>) -> Thickness<'a> {
+        match self.asked.thickness {
+            Some(mm) => Thickness::Constant(mm.get() as f32),
+            None => exact,
+        }
+    }
+
+    /// Fills the occlusion of the whole picture.
+    ///
+    /// # Errors
+    /// As [`Run::screen`].
+    pub fn find(
+        &self,
+        run: &mut Run,
+        view: &View,
+        cast: &SurfaceCast,
+        planes: &mut Planes,
+    ) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            screen: Some(ScreenPlanes { spans, estimate }),
+            layers,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
+        let radius_mm = self.asked.radius.get() as f32;
+        let around = Surroundings {
+            slices: &self.slices,
+            radius_mm,
+        };
+        let seen = (&*spans, &*hit_mm, &*layers);
+        screen_occlusion(run, view.inputs, cast.iso, around, seen, estimate)?;
+        smooth_occlusion(run, radius_mm, spans, estimate, layers)
+    }
+}
+
+/// Fills the spans where the picture's occlusion is estimated from them, and the layer where there is one.
+///
+/// # Errors
+/// As [`Run::cast`].
+pub fn find_thickness(run: &mut Run, how: Thickness, planes: &mut Planes) -> Result<()> {
+    let Planes {
+        hit_mm: Some(hit_mm),
+        screen,
+        layers,
+        ..
+    } = planes
+    else {
+        return Ok(());
+    };
+    let spans = screen.as_mut().map(|screen| &mut screen.spans);
+    if spans.is_none() && !layers.has(Layer::Thick) {
+        return Ok(());
+    }
+    thickness(run, how, hit_mm, spans, layers)
+}

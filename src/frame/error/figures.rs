@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::frame::{Frame, Layer};
 
 use super::{
-    ColorError, DepthError, NormalError, OcclusionError, ValueError, color_error, depth_error,
-    flip, normal_error, occlusion_error, ssim, value_error,
+    ColorError, DepthError, FocusError, NormalError, OcclusionError, ValueError, color_error,
+    depth_error, flip, focus_error, normal_error, occlusion_error, ssim, value_error,
 };
 
 /// The units that depths and values are measured in.
@@ -36,6 +36,8 @@ pub struct Figures {
     pub value: Option<ValueError>,
     /// The error of what the surface keeps from its hits.
     pub occlusion: Option<OcclusionError>,
+    /// The error of the displayed colours in focus, before and behind it, of pictures through a lens.
+    pub focus: Option<FocusError>,
 }
 
 /// Compares all planes that both pictures have. Which planes make sense for a picture is the
@@ -65,6 +67,9 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
             .transpose()?,
         occlusion: occluded
             .then(|| occlusion_error(reference, frame))
+            .transpose()?,
+        focus: (shown && both_have(Layer::Coc))
+            .then(|| focus_error(reference, frame))
             .transpose()?,
     })
 }

@@ -131,6 +131,9 @@ const ALL: &[Column] = &[
         row.error.and_then(|e| e.occlusion?.p99).into()
     }),
     OCCLUSION_BIAS,
+    FOCUSED_RMSE,
+    NEAR_RMSE,
+    FAR_RMSE,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -221,6 +224,19 @@ const OCCLUSION_MEAN: Column = ("occlusion_mean", "occlusion mean", Shown::Fixed
 const OCCLUSION_BIAS: Column = ("occlusion_bias", "occlusion bias", Shown::Fixed(4), |row| {
     row.error.and_then(|e| e.occlusion?.bias).into()
 });
+/// Of pixels in focus, before and behind it.
+const FOCUSED_RMSE: Column = (
+    "focused_rmse",
+    "in focus rmse, %",
+    Shown::Percent(4),
+    |row| row.error.and_then(|e| e.focus?.in_focus.rmse).into(),
+);
+const NEAR_RMSE: Column = ("near_rmse", "near rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.near.rmse).into()
+});
+const FAR_RMSE: Column = ("far_rmse", "far rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.far.rmse).into()
+});
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
 });
@@ -245,6 +261,8 @@ const OF_OCCLUDED: &[Column] = &[
     OCCLUSION_MEAN,
     OCCLUSION_BIAS,
 ];
+/// Beside those where there is a lens.
+const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.
@@ -261,6 +279,10 @@ pub fn short_table(rows: &[Row]) -> Table {
     let occluded = rows
         .iter()
         .any(|row| row.error.is_some_and(|error| error.occlusion.is_some()));
+    let blurred = rows
+        .iter()
+        .any(|row| row.error.is_some_and(|error| error.focus.is_some()));
+    let of_lens: &[Column] = if blurred { OF_LENS } else { &[] };
     let own: &[Column] = match (surface, projection) {
         (true, _) if occluded => OF_OCCLUDED,
         (true, _) => OF_SURFACES,
@@ -268,14 +290,10 @@ pub fn short_table(rows: &[Row]) -> Table {
         _ => &[],
     };
     let columns = [NAME, FRAME_MS, PROCESSOR_MS].into_iter();
-    let columns = columns.chain(own.iter().copied()).chain([
-        RMSE,
-        MAX,
-        SSIM,
-        FLIP,
-        SAMPLES_PER_RAY,
-        NODES_PER_RAY,
-    ]);
+    let own = own.iter().chain(of_lens).copied();
+    let columns = columns
+        .chain(own)
+        .chain([RMSE, MAX, SSIM, FLIP, SAMPLES_PER_RAY, NODES_PER_RAY]);
     let columns: Vec<Column> = columns.chain(remark(rows)).collect();
     table(rows, columns.iter())
 }

@@ -25,6 +25,7 @@ pub fn evaluated_planes(scene: &Scene) -> Wanted {
         .with_if(surface, Layer::Normal)
         .with_if(projection, Layer::Value)
         .with_if(scene.ambient_occlusion.is_some(), Layer::Occlusion)
+        .with_if(scene.depth_of_field.is_some(), Layer::Coc)
         .with(Layer::COUNTERS)
         .with([Layer::Kind])
 }

@@ -172,6 +172,18 @@ kernel_enum! {
 }
 
 kernel_enum! {
+    /// How opaque the pixels of a layer are whose discs are gathered.
+    pub enum Opacities: u32 {
+        /// Wholly, where they have a depth.
+        Whole => OPACITY_WHOLE = 0,
+        /// As many of a pixel's rays as met something.
+        OfRays => OPACITY_OF_RAYS = 1,
+        /// Wholly where they have a depth, as a medium's light is that of what lies behind it too.
+        OfMedium => OPACITY_OF_MEDIUM = 2,
+    }
+}
+
+kernel_enum! {
     /// The loops of the projections' casts.
     pub enum ProjectionLoop: u32 {
         /// The greatest or smallest value.
@@ -215,6 +227,9 @@ pub const CHECKED_OF: u32 = 256;
 /// How many sets of directions there are in which rays leave points of a surface: each pixel of a square has its own.
 pub const HEMISPHERES: u32 = 64;
 
+/// Pixels along the edge of the squares of which it is known how far the circles of confusion reach.
+pub const BLURRED_SQUARE: u32 = 8;
+
 /// The mark of a pixel that was cast.
 pub const MARK_CAST: u32 = 1;
 
@@ -238,6 +253,8 @@ const NUMBERS: &[(&str, u32)] = &[
     ("CHECKED_OF", CHECKED_OF),
     ("HEMISPHERES", HEMISPHERES),
     ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
+    ("WIDEST_PX", DepthOfField::WIDEST_PX as u32),
+    ("BLURRED_SQUARE", BLURRED_SQUARE),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),
@@ -268,6 +285,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         ProjectionLoop::CONSTANTS,
         Filling::CONSTANTS,
         SeenBy::CONSTANTS,
+        Opacities::CONSTANTS,
     ];
     tables.into_iter().flatten().copied()
 }

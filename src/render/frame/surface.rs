@@ -7,8 +7,8 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, ambient_occlusion, cast_surface, exact_surface,
-    interpolate_hits, mark_uncertain, shade_surface, surface_normal,
+    Blocks, Hiding, Leaving, Lit, Run, Seen, SurfaceBlocks, ambient_occlusion, behind_surface,
+    cast_surface, exact_surface, interpolate_hits, mark_uncertain, shade_surface, surface_normal,
 };
 use crate::render::resources::Hemispheres;
 use crate::scene::{
@@ -185,6 +185,40 @@ impl Schedule for SurfacePasses<'_> {
             interpolate_hits(run, self.cast.iso, marks, hit_mm, layers)?;
         }
         self.show(run, planes)
+    }
+
+    fn hidden_planes(&self, run: &Run) -> Result<Option<Planes>> {
+        let mut layers = vec![Layer::Kind, Layer::Depth];
+        if self.is_shaded {
+            layers.push(Layer::Normal);
+        }
+        if self.occlusion.is_some() {
+            layers.push(Layer::Occlusion);
+        }
+        let mut planes = Planes::new(run, &layers)?;
+        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
+        Ok(Some(planes))
+    }
+
+    fn cast_hidden(
+        &self,
+        run: &mut Run,
+        reaches: &Buffer<[f32; 4]>,
+        planes: &Planes,
+        hidden: &mut Planes,
+    ) -> Result<()> {
+        let (Some(hit_mm), Some(hidden_mm)) = (&planes.hit_mm, &mut hidden.hit_mm) else {
+            return Ok(());
+        };
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
+        let hiding = Hiding {
+            reaches,
+            after_mm: (START_VOXELS * spacing_mm) as f32,
+            hit_mm,
+        };
+        let layers = &mut hidden.layers;
+        behind_surface(run, self.view.inputs, &self.cast, hiding, hidden_mm, layers)?;
+        self.show(run, hidden)
     }
 }
 

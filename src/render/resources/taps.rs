@@ -1,0 +1,69 @@
+//! Places around a pixel, from which its blur is gathered.
+
+use crate::error::Result;
+use crate::gpu::{Args, Buffer, Device, Group};
+use crate::scene::DepthOfField;
+
+/// Places around a pixel on the device, the near before the far: column and row from it, the distance, and how many pixels
+/// each stands for.
+pub struct BlurTaps {
+    places: Buffer<[f32; 4]>,
+}
+
+impl BlurTaps {
+    /// Uploads the places of all discs.
+    ///
+    /// # Errors
+    /// The device has no room.
+    pub fn upload(device: &Device) -> Result<Self> {
+        let places = places(DepthOfField::WIDEST_PX / 2.0 + 0.5);
+        let narrowed: Vec<[f32; 4]> = places.iter().map(|of| of.map(|n| n as f32)).collect();
+        Ok(Self {
+            places: Buffer::upload(device, "places around a pixel", &narrowed)?,
+        })
+    }
+
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.places.bytes()
+    }
+}
+
+impl Group for &BlurTaps {
+    fn add_to(self, args: Args) -> Args {
+        args.read("taps", &self.places)
+            .value("tap_count", &(self.places.count() as u32))
+    }
+}
+
+/// So far around a pixel every pixel counts.
+const ALL_WITHIN_PX: f64 = 4.6;
+
+/// The places less than `reach_px` away. Near the pixel all are, where discs are small; farther out every second one of a
+/// chessboard, and again of every second row and column for each doubling of the distance.
+fn places(reach_px: f64) -> Vec<[f64; 4]> {
+    let reach = reach_px.ceil() as i32;
+    let around = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| [x, y]));
+    let mut places: Vec<[f64; 4]> = around
+        .filter_map(|[x, y]| {
+            let distance = f64::from(x * x + y * y).sqrt();
+            let stands_for = spacing(distance);
+            let side = 1 << (stands_for.ilog2() / 2);
+            let on_grid = x % side == 0 && y % side == 0;
+            let on_chessboard =
+                stands_for.ilog2().is_multiple_of(2) || (x / side + y / side) % 2 == 0;
+            (distance < reach_px && on_grid && on_chessboard)
+                .then(|| [f64::from(x), f64::from(y), distance, f64::from(stands_for)])
+        })
+        .collect();
+    places.sort_by(|a, b| a[2].total_cmp(&b[2]).then(a[1].total_cmp(&b[1])));
+    places
+}
+
+/// How many pixels a place stands for at a distance.
+fn spacing(distance_px: f64) -> u32 {
+    match distance_px / ALL_WITHIN_PX {
+        near if near <= 1.0 => 1,
+        far => 2 << (2 * far.log2().floor() as u32),
+    }
+}

@@ -6,10 +6,10 @@
 #include "lib/ray/blur.clh"
 
 // Pixels from one square to another so many squares away, along an axis.
-static inline float gap_px(int away)
+static inline int gap_px(int away)
 {
     int squares = abs(away) - 1;
-    return squares < 0 ? 0.0f : (float)(squares * (int)BLURRED_SQUARE + 1);
+    return squares < 0 ? 0 : squares * BLURRED_SQUARE + 1;
 }
 
 kernel void blur_reach(RayGrid rays, float reach_px, const global float4 *squares, global float4 *reaches)
@@ -25,12 +25,15 @@ kernel void blur_reach(RayGrid rays, float reach_px, const global float4 *square
     for (int y = max(j - span, 0); y <= min(j + span, down - 1); y++)
         for (int x = max(i - span, 0); x <= min(i + span, across - 1); x++) {
             BlurredSquare square = blurred_square(squares[y * across + x]);
-            float apart_px = hypot(gap_px(x - i), gap_px(y - j));
-            bool reaches = apart_px < square.reach + 0.5f;
+            int across_px = gap_px(x - i);
+            int down_px = gap_px(y - j);
+            float apart = (float)(across_px * across_px + down_px * down_px);
+            float reach = square.reach + 0.5f;
+            bool reaches = apart < reach * reach;
             found.reach = reaches ? max(found.reach, square.reach) : found.reach;
             found.nearest = reaches ? min(found.nearest, square.nearest) : found.nearest;
             found.farthest = reaches ? max(found.farthest, square.farthest) : found.farthest;
-            found.uneven = found.uneven || (square.uneven && apart_px < reach_px + 0.5f);
+            found.uneven = found.uneven || (square.uneven && apart < (reach_px + 0.5f) * (reach_px + 0.5f));
         }
     reaches[j * across + i] = square_numbers(found);
 }

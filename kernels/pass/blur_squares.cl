@@ -1,6 +1,6 @@
 // How far discs reach (lib/ray/blur.clh) in each square of BLURRED_SQUARE x BLURRED_SQUARE pixels. A work-item takes a square.
 //
-// Reads circle and cover and, with HIDDEN, those of what lies behind the first surfaces. Writes squares, row by row.
+// Reads circle and cover. Writes squares, row by row.
 #include "lib/ray/blur.clh"
 
 // Circles apart by more pixels than that belong to two surfaces.
@@ -58,22 +58,13 @@ static inline void add_pixels(BlurredSquare *square, RayGrid rays, int i, int j,
         }
 }
 
-#if HIDDEN
-#define HIDDEN_PLANES , const global float *circle_behind, const global float *cover_behind
-#else
-#define HIDDEN_PLANES
-#endif
-
-kernel void blur_squares(RayGrid rays, const global float *circle, const global float *cover HIDDEN_PLANES, global float4 *squares)
+kernel void blur_squares(RayGrid rays, const global float *circle, const global float *cover, global float4 *squares)
 {
     int i = (int)(get_global_id(0) * BLURRED_SQUARE);
     int j = (int)(get_global_id(1) * BLURRED_SQUARE);
     uint squares_across = squares_in_row(rays);
     BlurredSquare square = {0.0f, INFINITY, -INFINITY, false};
     add_pixels(&square, rays, i, j, circle, cover);
-#if HIDDEN
-    add_pixels(&square, rays, i, j, circle_behind, cover_behind);
-#endif
     square.reach = square.nearest <= square.farthest ? 0.5f * max(-square.nearest, square.farthest) : 0.0f;
     square.uneven = square.uneven || square.farthest - square.nearest > APART_PX;
     squares[get_global_id(1) * squares_across + get_global_id(0)] = square_numbers(square);

@@ -17,14 +17,22 @@
 // Parts of the range of circles.
 #define BINS 6
 
+// Circles apart by less are not told apart.
+#define MIN_PART_PX 1.0f
+
+// Parts of the lens, quarters about its middle.
+#define SECTORS 4
+
 // The discs around the pixels of a tile.
 typedef struct {
     RayGrid rays;
     Pixels pixels;
-    bool clear; // no disc reaches over the picture's edge
-    float reach, nearest, width; // of the parts
+    bool clear;  // no disc reaches over the picture's edge
+    float ends[BINS]; // of the parts
+    int bins, near_bins; // parts, and those of them before the focal plane
     Floats circle;    // the pixels' own
     Mask focused;     // the pixels in focus
+    float own_reach;  // of the widest
 } Tile;
 
 // Places around a pixel.
@@ -33,24 +41,37 @@ typedef struct {
     uint count;
 } Taps;
 
-// What is covered of the lens by what is nearer than the ends of the parts, and by what is nearer than the pixel itself.
+// What is covered of each sector of the lens by what lies in each part, and of the lens by what is nearer than the pixel itself.
 typedef struct {
-    Floats before[BINS];
+    Floats of[SECTORS][BINS];
     Floats before_own;
 } Covered;
 
+// A tap turned by so many quarters about the pixel.
+static inline int2 turned(float4 tap, int quarters)
+{
+    int2 across = (int2)((int)tap.x, (int)tap.y);
+    int2 down = (int2)(-across.y, across.x);
+    return quarters == 0 ? across : quarters == 1 ? down : quarters == 2 ? -across : -down;
+}
+
+// The sector of the lens that a disc covers from so many quarters around: what lies before the focal plane is seen through
+// the other side.
+static inline int sector_of(const Tile *tile, int quarters, int bin)
+{
+    return bin < tile->near_bins ? (quarters + 2) % SECTORS : quarters;
+}
+
 // The pixels to which a tap leads from those of a tile.
-static inline Pixels tapped(const Tile *tile, float4 tap)
+static inline Pixels tapped(const Tile *tile, int2 by)
 {
     Pixels pixels = tile->pixels;
-    int dx = (int)tap.x;
-    int dy = (int)tap.y;
     if (tile->clear) {
-        pixels.index += dy * (int)tile->rays.width + dx;
+        pixels.index += by.y * (int)tile->rays.width + by.x;
         return pixels;
     }
-    Ints i = clamp_ints(pixels.i + dx, INTS(0), INTS((int)tile->rays.width - 1));
-    Ints j = clamp_ints(pixels.j + dy, INTS(0), INTS((int)tile->rays.height - 1));
+    Ints i = clamp_ints(pixels.i + by.x, INTS(0), INTS((int)tile->rays.width - 1));
+    Ints j = clamp_ints(pixels.j + by.y, INTS(0), INTS((int)tile->rays.height - 1));
     pixels.index = j * (int)tile->rays.width + i;
     pixels.in_rows = false;
     return pixels;
@@ -64,9 +85,26 @@ static inline bool is_clear(RayGrid rays, int reach)
     return i >= reach && j >= reach && i + (int)TILE_WIDTH + reach <= (int)rays.width && j + (int)TILE_HEIGHT + reach <= (int)rays.height;
 }
 
-static inline float part_end(const Tile *tile, int part)
+// The parts of circles between two, none of which lies on both sides of the focal plane.
+static inline void part_circles(Tile *tile, float nearest, float farthest)
 {
-    return tile->nearest + (float)(part + 1) * tile->width;
+    float before = nearest < 0.0f ? -nearest : 0.0f;
+    float behind = farthest > 0.0f ? farthest : 0.0f;
+    int near_bins = min((int)ceil(before / MIN_PART_PX), BINS);
+    int far_bins = min((int)ceil(behind / MIN_PART_PX), BINS);
+    if (near_bins + far_bins > BINS) {
+        int shared = (int)((float)BINS * before / (before + behind) + 0.5f);
+        near_bins = min(near_bins, max(shared, 1));
+        near_bins = far_bins > 0 ? min(near_bins, BINS - 1) : near_bins;
+        far_bins = min(far_bins, BINS - near_bins);
+    }
+    tile->near_bins = near_bins;
+    tile->bins = max(near_bins + far_bins, 1);
+    for (int bin = 0; bin < tile->bins; bin++) {
+        int then = bin + 1 - near_bins;
+        tile->ends[bin] = then <= 0 ? before * (float)then / (float)near_bins : behind * (float)then / (float)far_bins;
+    }
+    tile->ends[tile->bins - 1] = INFINITY;
 }
 
 // Adds what the discs of a layer cover.
@@ -74,15 +112,23 @@ static inline void add_covered(const Tile *tile, Taps taps, BlurredLayer layer, 
 {
     for (uint n = 0u; n < taps.count; n++) {
         float4 tap = taps.taps[n];
-        if (tap.z >= tile->reach + 0.5f)
+        if (tap.z >= layer.reach)
             break;
-        Pixels there = tapped(tile, tap);
-        Floats circle = read_floats(layer.circle, there);
-        Floats covers = tap.w * disc_reach(circle, tap.z) * read_floats(layer.cover, there);
-        for (int part = 0; part < BINS - 1; part++)
-            covered->before[part] += circle < part_end(tile, part) ? covers : FLOATS(0.0f);
-        covered->before[BINS - 1] += covers;
-        covered->before_own += circle < tile->circle ? covers : FLOATS(0.0f);
+        for (int quarters = 0; quarters < SECTORS; quarters++) {
+            Pixels there = tapped(tile, turned(tap, quarters));
+            Floats circle = read_floats(layer.circle, there);
+            Floats reaches = disc_reach(circle, tap.z);
+            if (!ANY(reaches > 0.0f))
+                continue;
+            Floats covers = tap.w * reaches * read_floats(layer.cover, there);
+            Mask nearer = NO_LANE;
+            for (int bin = 0; bin < tile->bins; bin++) {
+                Mask before = circle < tile->ends[bin];
+                covered->of[sector_of(tile, quarters, bin)][bin] += before & !nearer ? covers : FLOATS(0.0f);
+                nearer = before;
+            }
+            covered->before_own += circle < tile->circle ? covers : FLOATS(0.0f);
+        }
     }
 }
 
@@ -92,51 +138,56 @@ static inline Floats covered_by_own(const Tile *tile, Taps taps)
     Floats covered = FLOATS(0.0f);
     for (uint n = 0u; n < taps.count; n++) {
         float4 tap = taps.taps[n];
-        if (tap.z >= tile->reach + 0.5f)
+        if (tap.z >= tile->own_reach)
             break;
         covered += tap.w * disc_reach(tile->circle, tap.z);
     }
-    return covered / disc_area(tile->circle);
+    return (float)SECTORS * covered / disc_area(tile->circle);
 }
 
-// The share of what is covered up to `to`, in order, from `from` on, that fits into `whole`.
-static inline Floats share_within(Floats from, Floats to, Floats whole)
+// Fills what is left of a sector with what covers it; what of that is seen.
+static inline Floats fill(Floats covers, Floats *left)
 {
-    Floats covered = to - from;
-    Floats within = min_of(to, whole) - min_of(from, whole);
-    return covered > 0.0f ? min_of(within / covered, FLOATS(1.0f)) : FLOATS(0.0f);
+    Floats seen = min_of(covers, *left);
+    *left -= seen;
+    return covers > 0.0f ? seen / covers : FLOATS(0.0f);
 }
 
-// Adds the light of the discs of a layer: of those in each part its share, to pixels in focus of those that are nearer `nearer`.
-static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, const Floats *shares, Floats nearer, Floats4 *light)
+// Adds the light of the discs of a layer: of those in each part what is seen, to pixels in focus of those that are nearer `nearer`.
+static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, const Covered *shares, Floats4 *light)
 {
     for (uint n = 0u; n < taps.count; n++) {
         float4 tap = taps.taps[n];
-        if (tap.z >= tile->reach + 0.5f)
+        if (tap.z >= layer.reach)
             break;
-        Pixels there = tapped(tile, tap);
-        Floats circle = read_floats(layer.circle, there);
-        Floats gives = tap.w * disc_reach(circle, tap.z) / disc_area(circle);
-        if (!ANY(gives > 0.0f))
-            continue;
-        Floats share = shares[BINS - 1];
-        for (int part = BINS - 2; part >= 0; part--)
-            share = circle < part_end(tile, part) ? shares[part] : share;
-        Floats share_in_focus = circle < tile->circle ? nearer : FLOATS(0.0f);
-        gives *= tile->focused ? share_in_focus : share;
-        Floats4 color = read_float4(layer.color, there);
-        light->x += gives * color.x;
-        light->y += gives * color.y;
-        light->z += gives * color.z;
-        light->w += gives * color.w;
+        for (int quarters = 0; quarters < SECTORS; quarters++) {
+            Pixels there = tapped(tile, turned(tap, quarters));
+            Floats circle = read_floats(layer.circle, there);
+            Floats reaches = disc_reach(circle, tap.z);
+            if (!ANY(reaches > 0.0f))
+                continue;
+            Floats gives = tap.w * reaches / disc_area(circle);
+            int last = tile->bins - 1;
+            Floats share = shares->of[sector_of(tile, quarters, last)][last];
+            for (int bin = last - 1; bin >= 0; bin--)
+                share = circle < tile->ends[bin] ? shares->of[sector_of(tile, quarters, bin)][bin] : share;
+            Floats share_in_focus = circle < tile->circle ? shares->before_own : FLOATS(0.0f);
+            gives *= tile->focused ? share_in_focus : share;
+            Floats4 color = read_float4(layer.color, there);
+            light->x += gives * color.x;
+            light->y += gives * color.y;
+            light->z += gives * color.z;
+            light->w += gives * color.w;
+        }
     }
 }
 
 static inline Covered nothing_covered(void)
 {
     Covered covered;
-    for (int part = 0; part < BINS; part++)
-        covered.before[part] = FLOATS(0.0f);
+    for (int sector = 0; sector < SECTORS; sector++)
+        for (int bin = 0; bin < BINS; bin++)
+            covered.of[sector][bin] = FLOATS(0.0f);
     covered.before_own = FLOATS(0.0f);
     return covered;
 }
@@ -147,26 +198,22 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
     Covered by_seen = nothing_covered();
     Covered by_hidden = nothing_covered();
     add_covered(tile, taps, seen, &by_seen);
-#if HIDDEN
     add_covered(tile, taps, hidden, &by_hidden);
-#endif
+    if (!ANY(!tile->focused | by_seen.before_own + by_hidden.before_own > 0.0f))
+        return own;
     Floats whole = covered_by_own(tile, taps);
     Floats nearer = by_seen.before_own + by_hidden.before_own;
-    Floats share_nearer = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);
-    Floats of_seen[BINS], of_hidden[BINS];
-    Floats before = FLOATS(0.0f);
-    for (int part = 0; part < BINS; part++) {
-        Floats then_seen = by_seen.before[part] + (part > 0 ? by_hidden.before[part - 1] : FLOATS(0.0f));
-        Floats then_hidden = by_seen.before[part] + by_hidden.before[part];
-        of_seen[part] = share_within(before, then_seen, whole);
-        of_hidden[part] = share_within(then_seen, then_hidden, whole);
-        before = then_hidden;
+    by_seen.before_own = by_hidden.before_own = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);
+    for (int sector = 0; sector < SECTORS; sector++) {
+        Floats left = whole / (float)SECTORS;
+        for (int bin = 0; bin < tile->bins; bin++) {
+            by_seen.of[sector][bin] = fill(by_seen.of[sector][bin], &left);
+            by_hidden.of[sector][bin] = fill(by_hidden.of[sector][bin], &left);
+        }
     }
     Floats4 light = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
-    add_light(tile, taps, seen, of_seen, share_nearer, &light);
-#if HIDDEN
-    add_light(tile, taps, hidden, of_hidden, share_nearer, &light);
-#endif
+    add_light(tile, taps, seen, &by_seen, &light);
+    add_light(tile, taps, hidden, &by_hidden, &light);
     Floats uncovered = 1.0f - min_of(nearer, FLOATS(1.0f));
     Floats scale = tile->focused ? FLOATS(1.0f) : 1.0f / whole;
     Floats through = tile->focused ? uncovered : FLOATS(0.0f);
@@ -179,7 +226,8 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
 }
 
 #if HIDDEN
-#define HIDDEN_PLANES , const global float *circle_behind, const global float *cover_behind, const global float4 *color_behind
+#define HIDDEN_PLANES \
+    , const global float4 *reaches_behind, const global float *circle_behind, const global float *cover_behind, const global float4 *color_behind
 #else
 #define HIDDEN_PLANES
 #endif
@@ -190,26 +238,31 @@ kernel void gather_blur(RayGrid rays, const global float4 *taps, uint tap_count,
     Pixels pixels = tile_pixels(rays);
     if (!ANY(pixels.inside))
         return; // another work-item writes the nearest pixel
-    BlurredSquare around = blurred_square(reaches[square_of(pixels, squares_in_row(rays))]);
+    uint square = square_of(pixels, squares_in_row(rays));
+    BlurredSquare around = blurred_square(reaches[square]);
+    BlurredLayer seen = {circle, cover, color, around.reach + 0.5f};
+    BlurredLayer hidden = {circle, cover, color, 0.0f};
+#if HIDDEN
+    BlurredSquare behind = blurred_square(reaches_behind[square]);
+    if (behind.nearest <= behind.farthest) {
+        BlurredLayer layer = {circle_behind, cover_behind, color_behind, behind.reach + 0.5f};
+        hidden = layer;
+        around.reach = max(around.reach, behind.reach);
+        around.nearest = min(around.nearest, behind.nearest);
+        around.farthest = max(around.farthest, behind.farthest);
+    }
+#endif
     if (!is_blurred(around))
         return;
-    Floats4 own = read_float4(color, pixels);
     Tile tile;
     tile.rays = rays;
     tile.pixels = pixels;
-    tile.reach = around.reach;
-    tile.nearest = around.nearest;
-    tile.width = (around.farthest - around.nearest) / (float)BINS;
+    part_circles(&tile, around.nearest, around.farthest);
     tile.clear = is_clear(rays, (int)(around.reach + 0.5f));
     tile.circle = read_floats(circle, pixels);
-    Mask is_seen = read_floats(cover, pixels) > 0.0f;
-    tile.focused = is_seen & is_focused(tile.circle);
+    tile.own_reach = 0.5f * MAX_LANE(fabs(tile.circle)) + 0.5f;
+    tile.focused = read_floats(cover, pixels) > 0.0f & is_focused(tile.circle);
     Taps from = {taps, tap_count};
-    BlurredLayer seen = {circle, cover, color};
-#if HIDDEN
-    BlurredLayer hidden = {circle_behind, cover_behind, color_behind};
-#else
-    BlurredLayer hidden = seen;
-#endif
+    Floats4 own = read_float4(color, pixels);
     scatter_float4(blurred, pixels, seen_by_lens(&tile, from, seen, hidden, own));
 }

@@ -36,7 +36,7 @@ pub struct Figures {
     pub value: Option<ValueError>,
     /// The error of what the surface keeps from its hits.
     pub occlusion: Option<OcclusionError>,
-    /// The error of the displayed colours in focus, before and behind it, of pictures through a lens.
+    /// The error of the displayed colours in focus, before and behind it and beside what is seen, of pictures through a lens.
     pub focus: Option<FocusError>,
 }
 
@@ -68,7 +68,7 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
         occlusion: occluded
             .then(|| occlusion_error(reference, frame))
             .transpose()?,
-        focus: (shown && both_have(Layer::Coc))
+        focus: (shown && deep && both_have(Layer::Coc))
             .then(|| focus_error(reference, frame))
             .transpose()?,
     })

@@ -5,24 +5,26 @@ use serde::{Serialize, Serializer};
 use crate::error::{Error, Result};
 
 use super::pairing::{comparable, displays};
-use crate::frame::{COC, Frame};
+use crate::frame::{COC, DEPTH, Frame};
 
-/// The error of the display planes' colours in three parts of the picture, by the reference's circles of confusion: as in
-/// [`ColorError`](super::ColorError), of the pixels of each part that either picture covers.
+/// The error of the display planes' colours in parts of the picture, by the reference's depths and circles of confusion: as in
+/// [`ColorError`](super::ColorError).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FocusError {
     /// Circles of half a pixel at most.
     pub in_focus: PartError,
     /// Wider circles of what lies before the focal plane.
     pub near: PartError,
-    /// Wider circles of what lies behind it; of where nothing is seen but through the lens, too.
+    /// Wider circles of what lies behind it.
     pub far: PartError,
+    /// Where nothing is seen but through the lens, in either picture.
+    pub beside: PartError,
 }
 
 /// The error in a part of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PartError {
-    /// Its pixels that either picture covers.
+    /// Its pixels.
     pub pixels: u64,
     /// The root mean square of their differences; `None` if there are no pixels.
     pub rmse: Option<f64>,
@@ -50,18 +52,23 @@ const FOCUSED_PX: f32 = 0.5;
 /// the focal plane.
 ///
 /// # Errors
-/// As [`color_error`](super::color_error); the reference has no circles of confusion.
+/// As [`color_error`](super::color_error); the reference has no circles of confusion, or no depths.
 pub fn focus_error(reference: &Frame, frame: &Frame) -> Result<FocusError> {
     comparable(reference, frame)?;
     let (left, right) = displays(reference, frame)?;
     let circles = reference
         .plane(COC)
         .ok_or_else(|| Error::failed("the reference has no circles of confusion to compare by"))?;
-    let mut parts = [(0, 0.0); 3];
-    for (pixel, &circle) in circles.iter().enumerate() {
-        let covered = reference.color[pixel][3] > 0.0 || frame.color[pixel][3] > 0.0;
-        if covered {
-            let (pixels, squares) = &mut parts[part_of(circle)];
+    let depths = reference
+        .plane(DEPTH)
+        .ok_or_else(|| Error::failed("the reference has no depths to compare by"))?;
+    let mut parts = [(0, 0.0); 4];
+    for (pixel, (&circle, &depth)) in circles.iter().zip(depths).enumerate() {
+        let is_deep = depth.is_finite();
+        let covers = |frame: &Frame| frame.color[pixel][3] > 0.0;
+        if is_deep || covers(reference) || covers(frame) {
+            let part = if is_deep { part_of(circle) } else { 3 };
+            let (pixels, squares) = &mut parts[part];
             *pixels += 1;
             for channel in 0..3 {
                 let difference = f64::from(left[pixel][channel]) - f64::from(right[pixel][channel]);
@@ -69,11 +76,13 @@ pub fn focus_error(reference: &Frame, frame: &Frame) -> Result<FocusError> {
             }
         }
     }
-    let [in_focus, near, far] = parts.map(|(pixels, squares)| PartError::of(pixels, squares));
+    let [in_focus, near, far, beside] =
+        parts.map(|(pixels, squares)| PartError::of(pixels, squares));
     Ok(FocusError {
         in_focus,
         near,
         far,
+        beside,
     })
 }
 

@@ -134,6 +134,7 @@ const ALL: &[Column] = &[
     FOCUSED_RMSE,
     NEAR_RMSE,
     FAR_RMSE,
+    BESIDE_RMSE,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -224,7 +225,7 @@ const OCCLUSION_MEAN: Column = ("occlusion_mean", "occlusion mean", Shown::Fixed
 const OCCLUSION_BIAS: Column = ("occlusion_bias", "occlusion bias", Shown::Fixed(4), |row| {
     row.error.and_then(|e| e.occlusion?.bias).into()
 });
-/// Of pixels in focus, before and behind it.
+/// Of pixels in focus, before and behind it, and where nothing is seen but through the lens.
 const FOCUSED_RMSE: Column = (
     "focused_rmse",
     "in focus rmse, %",
@@ -236,6 +237,9 @@ const NEAR_RMSE: Column = ("near_rmse", "near rmse, %", Shown::Percent(4), |row|
 });
 const FAR_RMSE: Column = ("far_rmse", "far rmse, %", Shown::Percent(4), |row| {
     row.error.and_then(|e| e.focus?.far.rmse).into()
+});
+const BESIDE_RMSE: Column = ("beside_rmse", "beside rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.beside.rmse).into()
 });
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
@@ -262,7 +266,7 @@ const OF_OCCLUDED: &[Column] = &[
     OCCLUSION_BIAS,
 ];
 /// Beside those where there is a lens.
-const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE];
+const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE, BESIDE_RMSE];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.

@@ -60,6 +60,7 @@ pub fn gather(run: &mut Run, view: &View, planes: &mut Planes, dof: DepthOfField
 struct Hidden {
     planes: Planes,
     discs: Discs,
+    reaches: Buffer<[f32; 4]>,
 }
 
 impl Hidden {
@@ -71,8 +72,16 @@ impl Hidden {
         planes
             .layers
             .allocate(run.device, &run.rays, &[Layer::Coc])?;
-        let discs = Discs::new(run)?;
-        Ok(Some(Self { planes, discs }))
+        Ok(Some(Self {
+            planes,
+            discs: Discs::new(run)?,
+            reaches: blurred_squares(run)?,
+        }))
+    }
+
+    /// Device memory held, in bytes.
+    fn bytes(&self) -> u64 {
+        self.planes.bytes() + self.discs.bytes() + self.reaches.bytes()
     }
 }
 
@@ -102,35 +111,32 @@ impl Gather<'_> {
         let Planes { layers, color, .. } = &mut *planes;
         circles(run, scene, lit, focus_mm, layers, color)?;
         blur_circles(run, opacities(scene), layers, color, &mut self.discs)?;
-        blur_squares(run, &self.discs, None, &mut self.squares)?;
+        blur_squares(run, &self.discs, &mut self.squares)?;
         blur_reach(run, reach_px, &self.squares, &mut self.reaches)?;
         if let Some(hidden) = &mut self.hidden {
+            let of_hidden = &mut hidden.planes;
             self.schedule
-                .cast_hidden(run, &self.reaches, planes, &mut hidden.planes)?;
-            let Planes { layers, color, .. } = &mut hidden.planes;
+                .cast_hidden(run, &self.reaches, planes, of_hidden)?;
+            let Planes { layers, color, .. } = of_hidden;
             circles(run, scene, lit, focus_mm, layers, color)?;
             blur_circles(run, Opacities::Whole, layers, color, &mut hidden.discs)?;
-            blur_squares(run, &self.discs, Some(&hidden.discs), &mut self.squares)?;
-            blur_reach(run, reach_px, &self.squares, &mut self.reaches)?;
+            blur_squares(run, &hidden.discs, &mut self.squares)?;
+            blur_reach(run, reach_px, &self.squares, &mut hidden.reaches)?;
         }
         let seen = BlurredLayer {
+            reaches: &self.reaches,
             discs: &self.discs,
             color: &planes.color,
         };
         let hidden = self.hidden.as_ref().map(|hidden| BlurredLayer {
+            reaches: &hidden.reaches,
             discs: &hidden.discs,
             color: &hidden.planes.color,
         });
-        gather_blur(
-            run,
-            &self.taps,
-            &self.reaches,
-            seen,
-            hidden,
-            &mut self.blurred,
-        )?;
+        gather_blur(run, &self.taps, seen, hidden, &mut self.blurred)?;
+        let behind = hidden.map(|layer| layer.reaches);
+        put_blurred(run, &self.reaches, behind, &self.blurred, &mut planes.color)?;
         let Planes { layers, color, .. } = &mut *planes;
-        put_blurred(run, &self.reaches, &self.blurred, color)?;
         if darken.get() > 0.0 {
             circles(run, scene, self.dof, focus_mm, layers, color)?;
         }
@@ -142,7 +148,7 @@ impl Gather<'_> {
         let hidden = self.hidden.as_ref();
         self.taps.bytes()
             + self.discs.bytes()
-            + hidden.map_or(0, |hidden| hidden.planes.bytes() + hidden.discs.bytes())
+            + hidden.map_or(0, |hidden| hidden.bytes())
             + self.squares.bytes()
             + self.reaches.bytes()
             + self.blurred.bytes()
@@ -231,7 +237,7 @@ impl Mix {
     fn measure(&mut self, run: &mut Run, planes: &Planes) -> Result<()> {
         let Planes { layers, color, .. } = planes;
         blur_circles(run, Opacities::OfMedium, layers, color, &mut self.discs)?;
-        blur_squares(run, &self.discs, None, &mut self.squares)
+        blur_squares(run, &self.discs, &mut self.squares)
     }
 
     /// Puts the launches at the end that blur and mix.

@@ -19,20 +19,8 @@ pub fn blurred_squares(run: &Run) -> Result<Buffer<[f32; 4]>> {
     Buffer::new(run.device, "squares of pixels", across * down)
 }
 
-/// How far discs reach in each square of pixels: those of what is seen first, and of what that hides.
-pub fn blur_squares(
-    run: &mut Run,
-    discs: &Discs,
-    hidden: Option<&Discs>,
-    squares: &mut Buffer<[f32; 4]>,
-) -> Result<()> {
-    let defines = run
-        .scalar_defines()
-        .with("HIDDEN", u32::from(hidden.is_some()));
-    let args = run
-        .screen_args()?
-        .with(discs)
-        .with(hidden.map(Discs::behind))
-        .write("squares", squares);
-    run.squares("blur_squares", defines, args, BLURRED_SQUARE)
+/// How far discs reach in each square of pixels.
+pub fn blur_squares(run: &mut Run, discs: &Discs, squares: &mut Buffer<[f32; 4]>) -> Result<()> {
+    let args = run.screen_args()?.with(discs).write("squares", squares);
+    run.squares("blur_squares", run.scalar_defines(), args, BLURRED_SQUARE)
 }

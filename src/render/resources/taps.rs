@@ -4,8 +4,8 @@ use crate::error::Result;
 use crate::gpu::{Args, Buffer, Device, Group};
 use crate::scene::DepthOfField;
 
-/// Places around a pixel on the device, the near before the far: column and row from it, the distance, and how many pixels
-/// each stands for.
+/// Places in a quarter around a pixel on the device, the near before the far: column and row from it, the distance, and how
+/// many pixels each stands for. The others are those turned by quarters; the pixel itself is in each.
 pub struct BlurTaps {
     places: Buffer<[f32; 4]>,
 }
@@ -39,12 +39,13 @@ impl Group for &BlurTaps {
 /// So far around a pixel every pixel counts.
 const ALL_WITHIN_PX: f64 = 4.6;
 
-/// The places less than `reach_px` away. Near the pixel all are, where discs are small; farther out every second one of a
+/// The places less than `reach_px` away in the quarter that begins on the row and ends before the column. Near the pixel all are, where discs are small; farther out every second one of a
 /// chessboard, and again of every second row and column for each doubling of the distance.
 fn places(reach_px: f64) -> Vec<[f64; 4]> {
     let reach = reach_px.ceil() as i32;
-    let around = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| [x, y]));
-    let mut places: Vec<[f64; 4]> = around
+    let quarter = (0..=reach).flat_map(|y| (0..=reach).map(move |x| [x, y]));
+    let mut places: Vec<[f64; 4]> = quarter
+        .filter(|&[x, y]| x > 0 || y == 0)
         .filter_map(|[x, y]| {
             let distance = f64::from(x * x + y * y).sqrt();
             let stands_for = spacing(distance);
@@ -52,12 +53,27 @@ fn places(reach_px: f64) -> Vec<[f64; 4]> {
             let on_grid = x % side == 0 && y % side == 0;
             let on_chessboard =
                 stands_for.ilog2().is_multiple_of(2) || (x / side + y / side) % 2 == 0;
-            (distance < reach_px && on_grid && on_chessboard)
-                .then(|| [f64::from(x), f64::from(y), distance, f64::from(stands_for)])
+            (distance < reach_px && on_grid && on_chessboard).then(|| {
+                [
+                    f64::from(x),
+                    f64::from(y),
+                    distance,
+                    share(distance, stands_for),
+                ]
+            })
         })
         .collect();
     places.sort_by(|a, b| a[2].total_cmp(&b[2]).then(a[1].total_cmp(&b[1])));
     places
+}
+
+/// What a place counts: the pixel itself, which stands in all quarters, a quarter.
+fn share(distance_px: f64, stands_for: u32) -> f64 {
+    if distance_px == 0.0 {
+        0.25
+    } else {
+        f64::from(stands_for)
+    }
 }
 
 /// How many pixels a place stands for at a distance.

@@ -148,6 +148,8 @@ static inline Floats covered_by_own(const Tile *tile, Taps taps)
 // Fills what is left of a sector with what covers it; what of that is seen.
 static inline Floats fill(Floats covers, Floats *left)
 {
+    if (!ANY(covers > 0.0f))
+        return covers;
     Floats seen = min_of(covers, *left);
     *left -= seen;
     return covers > 0.0f ? seen / covers : FLOATS(0.0f);
@@ -203,17 +205,20 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
         return own;
     Floats whole = covered_by_own(tile, taps);
     Floats nearer = by_seen.before_own + by_hidden.before_own;
-    by_seen.before_own = by_hidden.before_own = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);
+    Mask shows_hidden = tile->focused & by_hidden.before_own > 0.0f;
     for (int sector = 0; sector < SECTORS; sector++) {
         Floats left = whole / (float)SECTORS;
         for (int bin = 0; bin < tile->bins; bin++) {
             by_seen.of[sector][bin] = fill(by_seen.of[sector][bin], &left);
             by_hidden.of[sector][bin] = fill(by_hidden.of[sector][bin], &left);
+            shows_hidden = shows_hidden | (!tile->focused & by_hidden.of[sector][bin] > 0.0f);
         }
     }
+    by_seen.before_own = by_hidden.before_own = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);
     Floats4 light = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};
     add_light(tile, taps, seen, &by_seen, &light);
-    add_light(tile, taps, hidden, &by_hidden, &light);
+    if (ANY(shows_hidden))
+        add_light(tile, taps, hidden, &by_hidden, &light);
     Floats uncovered = 1.0f - min_of(nearer, FLOATS(1.0f));
     Floats scale = tile->focused ? FLOATS(1.0f) : 1.0f / whole;
     Floats through = tile->focused ? uncovered : FLOATS(0.0f);

@@ -37,10 +37,10 @@ impl Group for &BlurTaps {
 }
 
 /// So far around a pixel every pixel counts.
-const ALL_WITHIN_PX: f64 = 4.6;
+const ALL_WITHIN_PX: f64 = 3.2;
 
-/// The places less than `reach_px` away in the quarter that begins on the row and ends before the column. Near the pixel all are, where discs are small; farther out every second one of a
-/// chessboard, and again of every second row and column for each doubling of the distance.
+/// The places less than `reach_px` away in the quarter that begins on the row and ends before the column. Near the pixel all are, where discs are small; farther out those of a chessboard, then those of every second row and column, then of
+/// those a chessboard, and so on.
 fn places(reach_px: f64) -> Vec<[f64; 4]> {
     let reach = reach_px.ceil() as i32;
     let quarter = (0..=reach).flat_map(|y| (0..=reach).map(move |x| [x, y]));
@@ -76,10 +76,8 @@ fn share(distance_px: f64, stands_for: u32) -> f64 {
     }
 }
 
-/// How many pixels a place stands for at a distance.
+/// How many pixels a place stands for at a distance: twice as many for each √2 of it.
 fn spacing(distance_px: f64) -> u32 {
-    match distance_px / ALL_WITHIN_PX {
-        near if near <= 1.0 => 1,
-        far => 2 << (2 * far.log2().floor() as u32),
-    }
+    let doublings = (2.0 * (distance_px / ALL_WITHIN_PX).log2()).ceil();
+    1 << doublings.max(0.0) as u32
 }

@@ -1,12 +1,11 @@
 // What each pixel gives to those that its disc reaches (lib/ray/blur.clh): its circle of confusion, at most WIDEST_PX, and what
 // it covers of the lens.
 //
-// `opacity` says what a pixel covers: all of it where it has a depth (OPACITY_WHOLE); as much as it is opaque, as it has several
-// rays (OPACITY_OF_RAYS); all where it has a depth, as what lies behind is part of its light, elsewhere as much as it is opaque
-// (OPACITY_OF_MEDIUM). Where several rays met something that the middle one missed, that is taken to be as deep as the
-// nearest of the pixels around; where they have no depth either the light stays where it is.
+// A pixel covers all of its disc's part where it has a depth, or with `by_alpha`, where pixels have several rays, as much as it is
+// opaque. Where some of these met something that the middle one missed, that is taken to be as deep as the nearest of the pixels
+// around. Without a depth a pixel covers nothing: what little light it may have stays where it is, behind all else.
 //
-// Reads depth (+inf: none), coc and, unless pixels are opaque, color (linear light, premultiplied). Writes circle and cover.
+// Reads depth (+inf: none), coc and, with `by_alpha`, color (linear light, premultiplied). Writes circle and cover.
 #include "lib/ray/blur.clh"
 
 // The circle of the nearest of the pixels around that have a depth; 0: none has.
@@ -26,7 +25,7 @@ static inline Floats circle_around(RayGrid rays, Pixels pixels, const global flo
     return circle;
 }
 
-kernel void blur_circles(RayGrid rays, uint opacity, const global float *depth, const global float *coc, const global float4 *color,
+kernel void blur_circles(RayGrid rays, uint by_alpha, const global float *depth, const global float *coc, const global float4 *color,
                          global float *circle, global float *cover)
 {
     Pixels pixels = tile_pixels(rays);
@@ -35,12 +34,11 @@ kernel void blur_circles(RayGrid rays, uint opacity, const global float *depth, 
     Mask deep = read_floats(depth, pixels) < INFINITY;
     Floats diameter = deep ? read_floats(coc, pixels) : FLOATS(0.0f);
     Floats covered = deep ? FLOATS(1.0f) : FLOATS(0.0f);
-    if (opacity != OPACITY_WHOLE) {
-        Floats alpha = read_float4(color, pixels).w;
-        Mask missed = !deep & alpha > 0.0f;
+    if (by_alpha) {
+        covered = read_float4(color, pixels).w;
+        Mask missed = !deep & covered > 0.0f;
         if (ANY(missed))
             diameter = missed ? circle_around(rays, pixels, depth, coc) : diameter;
-        covered = deep & opacity == OPACITY_OF_MEDIUM ? FLOATS(1.0f) : alpha;
     }
     diameter = clamp_to(diameter, FLOATS(-(float)WIDEST_PX), FLOATS((float)WIDEST_PX));
     SCATTER(pixels.inside, circle, pixels.index, diameter);

@@ -62,6 +62,8 @@ kernel void blur_squares(RayGrid rays, const global float *circle, const global 
 {
     int i = (int)(get_global_id(0) * BLURRED_SQUARE);
     int j = (int)(get_global_id(1) * BLURRED_SQUARE);
+    if (i >= (int)rays.width || j >= (int)rays.height)
+        return;
     uint squares_across = squares_in_row(rays);
     BlurredSquare square = {0.0f, INFINITY, -INFINITY, false};
     add_pixels(&square, rays, i, j, circle, cover);

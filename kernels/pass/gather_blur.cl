@@ -27,6 +27,7 @@
 typedef struct {
     RayGrid rays;
     Pixels pixels;
+    int first;   // the first pixel's place in a plane
     bool clear;  // no disc reaches over the picture's edge
     float ends[BINS]; // of the parts
     int bins, near_bins; // parts, and those of them before the focal plane
@@ -62,19 +63,44 @@ static inline int sector_of(const Tile *tile, int quarters, int bin)
     return bin < tile->near_bins ? (quarters + 2) % SECTORS : quarters;
 }
 
-// The pixels to which a tap leads from those of a tile.
-static inline Pixels tapped(const Tile *tile, int2 by)
+// Where the numbers of the pixels to which a tap leads lie in a plane: of a tile that is clear its first, row by row, else those of
+// each lane.
+typedef struct {
+    int first;
+    Ints places;
+} Tapped;
+
+static inline Tapped tapped(const Tile *tile, int2 by)
 {
-    Pixels pixels = tile->pixels;
-    if (tile->clear) {
-        pixels.index += by.y * (int)tile->rays.width + by.x;
-        return pixels;
+    Tapped there = {tile->first + by.y * (int)tile->rays.width + by.x, INTS(0)};
+    if (!tile->clear) {
+        Ints i = clamp_ints(tile->pixels.i + by.x, INTS(0), INTS((int)tile->rays.width - 1));
+        Ints j = clamp_ints(tile->pixels.j + by.y, INTS(0), INTS((int)tile->rays.height - 1));
+        there.places = j * (int)tile->rays.width + i;
     }
-    Ints i = clamp_ints(pixels.i + by.x, INTS(0), INTS((int)tile->rays.width - 1));
-    Ints j = clamp_ints(pixels.j + by.y, INTS(0), INTS((int)tile->rays.height - 1));
-    pixels.index = j * (int)tile->rays.width + i;
-    pixels.in_rows = false;
-    return pixels;
+    return there;
+}
+
+static inline Floats tapped_floats(const Tile *tile, const global float *plane, Tapped there)
+{
+#if LANES > 1
+    if (tile->clear)
+        return tile_floats(plane, there.first, (int)tile->rays.width);
+    return GATHER(Floats, plane, there.places);
+#else
+    return plane[tile->clear ? there.first : there.places];
+#endif
+}
+
+static inline Floats4 tapped_float4(const Tile *tile, const global float4 *plane, Tapped there)
+{
+#if LANES > 1
+    if (tile->clear)
+        return tile_float4(plane, there.first, (int)tile->rays.width);
+    return gather_float4(plane, there.places);
+#else
+    return gather_float4(plane, tile->clear ? there.first : there.places);
+#endif
 }
 
 // Whether all pixels of a tile and those so far around it lie in the picture.
@@ -115,12 +141,12 @@ static inline void add_covered(const Tile *tile, Taps taps, BlurredLayer layer, 
         if (tap.z >= layer.reach)
             break;
         for (int quarters = 0; quarters < SECTORS; quarters++) {
-            Pixels there = tapped(tile, turned(tap, quarters));
-            Floats circle = read_floats(layer.circle, there);
+            Tapped there = tapped(tile, turned(tap, quarters));
+            Floats circle = tapped_floats(tile, layer.circle, there);
             Floats reaches = disc_reach(circle, tap.z);
             if (!ANY(reaches > 0.0f))
                 continue;
-            Floats covers = tap.w * reaches * read_floats(layer.cover, there);
+            Floats covers = tap.w * reaches * tapped_floats(tile, layer.cover, there);
             Mask nearer = NO_LANE;
             for (int bin = 0; bin < tile->bins; bin++) {
                 Mask before = circle < tile->ends[bin];
@@ -145,14 +171,15 @@ static inline Floats covered_by_own(const Tile *tile, Taps taps)
     return (float)SECTORS * covered / disc_area(tile->circle);
 }
 
-// Fills what is left of a sector with what covers it; what of that is seen.
+// Fills what is left of a sector with what covers it; what of that is seen. What covers nothing is seen where anything is left.
 static inline Floats fill(Floats covers, Floats *left)
 {
+    Floats open = *left > 0.0f ? FLOATS(1.0f) : FLOATS(0.0f);
     if (!ANY(covers > 0.0f))
-        return covers;
+        return open;
     Floats seen = min_of(covers, *left);
     *left -= seen;
-    return covers > 0.0f ? seen / covers : FLOATS(0.0f);
+    return covers > 0.0f ? seen / covers : open;
 }
 
 // Adds the light of the discs of a layer: of those in each part what is seen, to pixels in focus of those that are nearer `nearer`.
@@ -163,8 +190,8 @@ static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, co
         if (tap.z >= layer.reach)
             break;
         for (int quarters = 0; quarters < SECTORS; quarters++) {
-            Pixels there = tapped(tile, turned(tap, quarters));
-            Floats circle = read_floats(layer.circle, there);
+            Tapped there = tapped(tile, turned(tap, quarters));
+            Floats circle = tapped_floats(tile, layer.circle, there);
             Floats reaches = disc_reach(circle, tap.z);
             if (!ANY(reaches > 0.0f))
                 continue;
@@ -175,7 +202,7 @@ static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, co
                 share = circle < tile->ends[bin] ? shares->of[sector_of(tile, quarters, bin)][bin] : share;
             Floats share_in_focus = circle < tile->circle ? shares->before_own : FLOATS(0.0f);
             gives *= tile->focused ? share_in_focus : share;
-            Floats4 color = read_float4(layer.color, there);
+            Floats4 color = tapped_float4(tile, layer.color, there);
             light->x += gives * color.x;
             light->y += gives * color.y;
             light->z += gives * color.z;
@@ -209,9 +236,10 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
     for (int sector = 0; sector < SECTORS; sector++) {
         Floats left = whole / (float)SECTORS;
         for (int bin = 0; bin < tile->bins; bin++) {
+            Mask covers = by_hidden.of[sector][bin] > 0.0f;
             by_seen.of[sector][bin] = fill(by_seen.of[sector][bin], &left);
             by_hidden.of[sector][bin] = fill(by_hidden.of[sector][bin], &left);
-            shows_hidden = shows_hidden | (!tile->focused & by_hidden.of[sector][bin] > 0.0f);
+            shows_hidden = shows_hidden | (!tile->focused & covers & by_hidden.of[sector][bin] > 0.0f);
         }
     }
     by_seen.before_own = by_hidden.before_own = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);
@@ -263,6 +291,7 @@ kernel void gather_blur(RayGrid rays, const global float4 *taps, uint tap_count,
     tile.rays = rays;
     tile.pixels = pixels;
     part_circles(&tile, around.nearest, around.farthest);
+    tile.first = FIRST_LANE(pixels.index);
     tile.clear = is_clear(rays, (int)(around.reach + 0.5f));
     tile.circle = read_floats(circle, pixels);
     tile.own_reach = 0.5f * MAX_LANE(fabs(tile.circle)) + 0.5f;

@@ -373,6 +373,17 @@ mod tests {
     }
 
     #[test]
+    fn methods_are_named() {
+        for text in ["gather", "mix", "lens:16"] {
+            assert_eq!(text.parse::<DofMethod>().unwrap().to_string(), text);
+        }
+        assert_eq!("GATHER".parse::<DofMethod>(), Ok(DofMethod::default()));
+        for wrong in ["lens", "lens:0", "mix:3", "gather:2", "blur"] {
+            assert!(wrong.parse::<DofMethod>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn the_focus_is_found_by_nearest_rank() {
         let size = ImageSize::new(3, 2).unwrap();
         let depths = [4.0, f64::INFINITY, 1.0, 3.0, 2.0, f64::INFINITY];

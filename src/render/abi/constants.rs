@@ -172,18 +172,6 @@ kernel_enum! {
 }
 
 kernel_enum! {
-    /// How opaque the pixels of a layer are whose discs are gathered.
-    pub enum Opacities: u32 {
-        /// Wholly, where they have a depth.
-        Whole => OPACITY_WHOLE = 0,
-        /// As many of a pixel's rays as met something.
-        OfRays => OPACITY_OF_RAYS = 1,
-        /// Wholly where they have a depth, as a medium's light is that of what lies behind it too.
-        OfMedium => OPACITY_OF_MEDIUM = 2,
-    }
-}
-
-kernel_enum! {
     /// The loops of the projections' casts.
     pub enum ProjectionLoop: u32 {
         /// The greatest or smallest value.
@@ -285,7 +273,6 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         ProjectionLoop::CONSTANTS,
         Filling::CONSTANTS,
         SeenBy::CONSTANTS,
-        Opacities::CONSTANTS,
     ];
     tables.into_iter().flatten().copied()
 }

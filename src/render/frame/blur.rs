@@ -3,13 +3,12 @@
 use crate::error::Result;
 use crate::frame::{Layer, Wanted};
 use crate::gpu::Buffer;
-use crate::render::abi::Opacities;
 use crate::render::passes::{
     BlurredLayer, Discs, Run, blur_along, blur_circles, blur_reach, blur_squares, blurred_squares,
     gather_blur, mix_blurred, put_blurred,
 };
 use crate::render::resources::BlurTaps;
-use crate::scene::{DepthOfField, Picture, Scene, Share};
+use crate::scene::{DepthOfField, Share};
 
 use super::focus::{circles, focus_mm};
 use super::picture::schedule;
@@ -108,9 +107,10 @@ impl Gather<'_> {
             darken: Share::NONE,
             ..self.dof
         };
+        let by_alpha = self.hidden.is_some() && scene.anti_aliasing.rays() > 1;
         let Planes { layers, color, .. } = &mut *planes;
         circles(run, scene, lit, focus_mm, layers, color)?;
-        blur_circles(run, opacities(scene), layers, color, &mut self.discs)?;
+        blur_circles(run, by_alpha, layers, color, &mut self.discs)?;
         blur_squares(run, &self.discs, &mut self.squares)?;
         blur_reach(run, reach_px, &self.squares, &mut self.reaches)?;
         if let Some(hidden) = &mut self.hidden {
@@ -119,7 +119,7 @@ impl Gather<'_> {
                 .cast_hidden(run, &self.reaches, planes, of_hidden)?;
             let Planes { layers, color, .. } = of_hidden;
             circles(run, scene, lit, focus_mm, layers, color)?;
-            blur_circles(run, Opacities::Whole, layers, color, &mut hidden.discs)?;
+            blur_circles(run, false, layers, color, &mut hidden.discs)?;
             blur_squares(run, &hidden.discs, &mut self.squares)?;
             blur_reach(run, reach_px, &self.squares, &mut hidden.reaches)?;
         }
@@ -152,15 +152,6 @@ impl Gather<'_> {
             + self.squares.bytes()
             + self.reaches.bytes()
             + self.blurred.bytes()
-    }
-}
-
-/// How opaque the pixels of a scene's picture are.
-fn opacities(scene: &Scene) -> Opacities {
-    match scene.picture {
-        Picture::Surface { .. } if scene.anti_aliasing.rays() > 1 => Opacities::OfRays,
-        Picture::Surface { .. } => Opacities::Whole,
-        _ => Opacities::OfMedium,
     }
 }
 
@@ -236,7 +227,7 @@ impl Mix {
     /// Puts the launches at the end that find the widest circle of each square of pixels.
     fn measure(&mut self, run: &mut Run, planes: &Planes) -> Result<()> {
         let Planes { layers, color, .. } = planes;
-        blur_circles(run, Opacities::OfMedium, layers, color, &mut self.discs)?;
+        blur_circles(run, false, layers, color, &mut self.discs)?;
         blur_squares(run, &self.discs, &mut self.squares)
     }
 

@@ -5,7 +5,7 @@ use crate::extent::{Dims, ImageSize};
 use crate::frame::{Layer, Wanted};
 use crate::gpu::{DeviceInfo, DeviceKind};
 use crate::render::resources::DeviceLayers;
-use crate::scene::Scene;
+use crate::scene::{DofMethod, Scene};
 use crate::volume::VoxelType;
 
 /// Rays that are cast at a time where a pixel has many: their planes take some tens of megabytes.
@@ -30,7 +30,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
 }
 
 /// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
-/// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
+/// cast at a time where a pixel has many, and for those that depth of field is made of: the picture that one point of a lens
+/// sees, what surfaces hide and the discs of both, or blurred pictures.
 pub fn listing_bytes(scene: &Scene) -> u64 {
     /// A mark and a number in the list.
     const LISTED: u64 = 4 + 4;
@@ -40,7 +41,20 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         scene.size.pixels() as u64,
         u64::from(scene.anti_aliasing.rays()),
     );
-    let of_lens = scene.depth_of_field.map_or(0, |_| pixels * RAY);
+    /// A depth and a circle of confusion.
+    const DEEP: u64 = 4 + 4;
+    /// A disc, and what it covers.
+    const DISC: u64 = 4 + 4;
+    /// Light, premultiplied.
+    const LIGHT: u64 = 16;
+    let of_lens = pixels
+        * scene
+            .depth_of_field
+            .map_or(0, |_| match scene.sampling.dof {
+                DofMethod::Gather => RAY + DEEP + 2 * DISC + LIGHT,
+                DofMethod::Mix => DISC + 2 * LIGHT,
+                DofMethod::Lens(_) => RAY,
+            });
     if rays > 1 {
         return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
     }

@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::{Args, Buffer, Group};
-use crate::render::abi::{KernelEnum, Opacities};
 use crate::render::resources::DeviceLayers;
 
 use super::run::Run;
@@ -54,18 +53,18 @@ impl Group for Behind<'_> {
     }
 }
 
-/// The discs of all pixels of a `color`, which cover as much as their `opacity` says. Reads the depth and the circles of
-/// confusion.
+/// The discs of all pixels of a `color` that have a depth; with `by_alpha`, as pixels have several rays, of all that are not
+/// clear, and each covers as much as it is opaque. Reads the depth and the circles of confusion.
 pub fn blur_circles(
     run: &mut Run,
-    opacity: Opacities,
+    by_alpha: bool,
     layers: &DeviceLayers,
     color: &Buffer<[f32; 4]>,
     discs: &mut Discs,
 ) -> Result<()> {
     let args = run
         .screen_args()?
-        .value("opacity", &opacity.number())
+        .value("by_alpha", &u32::from(by_alpha))
         .with(layers.reading(&[Layer::Depth, Layer::Coc]))
         .read("color", color)
         .write("circle", &mut discs.circle)

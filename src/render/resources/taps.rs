@@ -81,3 +81,41 @@ fn spacing(distance_px: f64) -> u32 {
     let doublings = (2.0 * (distance_px / ALL_WITHIN_PX).log2()).ceil();
     1 << doublings.max(0.0) as u32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Turned by quarters the places stand for all pixels of a disc, each once, wherever its rim is.
+    #[test]
+    fn places_stand_for_all_pixels() {
+        for radius_px in [0.5_f64, 1.5, 2.5, 3.0, 5.0, 8.0, 13.0, 21.0, 32.0] {
+            let counted: f64 = 4.0 * places(radius_px).iter().map(|place| place[3]).sum::<f64>();
+            let reach = radius_px.ceil() as i64;
+            let squares =
+                (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| x * x + y * y));
+            let pixels = squares
+                .filter(|&square| (square as f64) < radius_px * radius_px)
+                .count() as f64;
+            let apart = (counted / pixels - 1.0).abs();
+            let most = if radius_px <= ALL_WITHIN_PX {
+                0.0
+            } else {
+                0.12
+            };
+            assert!(apart <= most, "{radius_px}: {counted} {pixels}");
+        }
+    }
+
+    #[test]
+    fn near_places_come_first_and_their_number_grows_slowly() {
+        let all = places(32.5);
+        assert!(all.is_sorted_by(|a, b| a[2] <= b[2]));
+        assert_eq!(all[0], [0.0, 0.0, 0.0, 0.25]);
+        assert!(
+            all.iter()
+                .all(|&[x, y, ..]| y >= 0.0 && (x > 0.0 || y == 0.0))
+        );
+        assert!(all.len() < 70, "{}", all.len());
+    }
+}

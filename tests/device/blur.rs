@@ -2,7 +2,7 @@
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::{FocusError, color_error, focus_error};
-use angioray::frame::{COC, Frame, Wanted};
+use angioray::frame::{COC, DEPTH, Frame, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
@@ -75,7 +75,9 @@ fn an_edge_is_blurred_as_the_closed_form_says() {
         let (block, scene) = block(lens, dof);
         let frames = on_device(&device, &block, &[gathered(&scene)]);
         let found = apart(&frames[0], circle_px.abs());
-        assert!(found < 0.02, "{dof}: {found}");
+        // The discs of pixels are discs of points but for their rims, and are gathered from fewer places farther out.
+        let most = if circle_px.abs() < 13.0 { 0.03 } else { 0.05 };
+        assert!(found < most, "{dof}: {found}");
         // The control: a circle of another size.
         assert!(apart(&frames[0], 1.4 * circle_px.abs()) > 0.03, "{dof}");
         let coc = f64::from(frames[0].plane(COC).unwrap()[30]);
@@ -124,7 +126,7 @@ fn a_white_plate_stays_white() {
         (perspective, "focus=100,aperture=8"),
         (parallel, "focus=80,aperture=5deg"),
     ] {
-        for (tilt_deg, most) in [(0.0, 1e-5), (45.0, 0.005)] {
+        for (tilt_deg, most) in [(0.0, 1e-5), (45.0, 0.03)] {
             let (plate, mut scene) = plate(tilt_deg, lens, dof);
             for per_side in [1, 2] {
                 scene.anti_aliasing = AntiAliasing::new(per_side, false).unwrap();
@@ -384,13 +386,13 @@ fn how_rays_are_followed_changes_no_bit() {
 }
 
 /// The pinhole's picture mixed with itself under a Gaussian, by the definition: double precision, place by place.
-fn mixed(frame: &Frame, circles: &[f32], seen: &Frame) -> Vec<[f64; 4]> {
+fn mixed(frame: &Frame, circles: &[f32]) -> Vec<[f64; 4]> {
     let (width, height) = (frame.size.width() as i64, frame.size.height() as i64);
-    let widest = circles
-        .iter()
-        .zip(&seen.color)
-        .filter(|(_, color)| color[3] > 0.0)
-        .fold(0.0, |most: f64, (&circle, _)| {
+    let depths = frame.plane(DEPTH).unwrap().iter();
+    let widest = depths
+        .zip(circles)
+        .filter(|(depth, _)| depth.is_finite())
+        .fold(0.0, |most: f64, (_, &circle)| {
             most.max(f64::from(circle).abs())
         });
     let deviation = widest / 4.0;
@@ -440,7 +442,7 @@ fn mixing_is_as_defined() {
         scene.sampling.dof = DofMethod::Mix;
         let frames = on_device(&device, &volume, &[scene.clone(), pinhole(&scene)]);
         let circles = frames[0].plane(COC).unwrap();
-        let expected = mixed(&frames[1], circles, &frames[1]);
+        let expected = mixed(&frames[1], circles);
         let apart = |frame: &Frame| {
             let pairs = frame.color.iter().flatten().zip(expected.iter().flatten());
             pairs.fold(0.0, |most: f64, (&a, &b)| {

@@ -59,8 +59,11 @@ group! {
         )]
         dof: DepthOfField,
 
-        /// How depth of field is made: lens:N casts the picture through N points of the lens, up to 1024
-        #[arg(long, value_name = "lens:N", allow_hyphen_values = true)]
+        /// How depth of field is made: gather blurs each surface over what lies behind it, with a second cast for
+        /// what first surfaces hide, and leaves what is in focus as it is; mix mixes the picture with a blurred
+        /// one by how far each pixel is out of focus (Lesar et al.); lens:N casts the picture through N points
+        /// of the lens, up to 1024
+        #[arg(long, value_name = "gather|mix|lens:N", allow_hyphen_values = true)]
         dof_method: DofMethod,
     }
 }

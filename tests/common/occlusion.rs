@@ -54,6 +54,7 @@ pub fn scene(eye: DVec3, point: DVec3, distance_mm: f64) -> Scene {
         sampling: Sampling::default(),
         lights: vec![Light::HEADLIGHT],
         ambient_occlusion: Some(occlusion(1024, distance_mm)),
+        shadows: None,
         depth_of_field: None,
         gradient: Default::default(),
         anti_aliasing: Default::default(),

@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod agreement;
 mod anti_aliasing;
+mod blur;
 mod clip_planes;
 mod edge_scenes;
 mod exact;

@@ -162,7 +162,7 @@ const MODES: [&str; 22] = [
 
 /// Fewer rays and more of them, and samples of their own, of the last volume, which has several leaves: they share the casts
 /// with the others.
-const RAY_COUNTS: [&str; 17] = [
+const RAY_COUNTS: [&str; 20] = [
     "--mode iso --iso 40% --screen-error 0.5",
     "--mode mip --screen-error 0.3",
     "--mode dvr --shading none --screen-error 0.3",
@@ -177,6 +177,9 @@ const RAY_COUNTS: [&str; 17] = [
     "--mode iso --iso 40% --aa 2 --ssao radius=6,samples=8",
     "--mode iso --iso 40% --sparse 4:0.1 --ssao radius=6,samples=8,thickness=2",
     "--mode dvr --dof focus=auto,aperture=2,darken=1 --dof-method lens:2",
+    "--mode iso --iso 40% --aa 2 --dof focus=percentile:10,aperture=9",
+    "--mode dvr --dof focus=auto,aperture=9,darken=1 --dof-method gather",
+    "--mode iso --iso 40% --dof focus=auto,aperture=9 --dof-method mix",
     "--mode iso --iso 40% --step 0.7 --jitter interleaved:3",
     "--mode mip --step 1.3 --jitter hash:5 --aa 2",
     "--mode dvr --shading none --quad midpoint --jitter hash:5:2",

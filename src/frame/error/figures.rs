@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::frame::{Frame, Key, Layer, OCCLUSION, VISIBILITY};
 
 use super::{
-    ColorError, DepthError, NormalError, ShareError, ValueError, color_error, depth_error, flip,
-    normal_error, share_error, ssim, value_error,
+    ColorError, DepthError, FocusError, NormalError, ShareError, ValueError, color_error,
+    depth_error, flip, focus_error, normal_error, share_error, ssim, value_error,
 };
 
 /// The units that depths and values are measured in.
@@ -38,6 +38,8 @@ pub struct Figures {
     pub occlusion: Option<ShareError>,
     /// The error of what reaches the hits of the first light: with a bias above 0 the picture is too bright.
     pub visibility: Option<ShareError>,
+    /// The error of the displayed colours in focus, before and behind it and beside what is seen, of pictures through a lens.
+    pub focus: Option<FocusError>,
 }
 
 /// Compares all planes that both pictures have. Which planes make sense for a picture is the
@@ -71,5 +73,8 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
             .transpose()?,
         occlusion: share(OCCLUSION)?,
         visibility: share(VISIBILITY)?,
+        focus: (shown && deep && both_have(Layer::Coc))
+            .then(|| focus_error(reference, frame))
+            .transpose()?,
     })
 }

@@ -137,6 +137,10 @@ const ALL: &[Column] = &[
         row.error.and_then(|e| e.visibility?.p99).into()
     }),
     VISIBILITY_BIAS,
+    FOCUSED_RMSE,
+    NEAR_RMSE,
+    FAR_RMSE,
+    BESIDE_RMSE,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -240,6 +244,22 @@ const VISIBILITY_BIAS: Column = (
     Shown::Fixed(4),
     |row| row.error.and_then(|e| e.visibility?.bias).into(),
 );
+/// Of pixels in focus, before and behind it, and where nothing is seen but through the lens.
+const FOCUSED_RMSE: Column = (
+    "focused_rmse",
+    "in focus rmse, %",
+    Shown::Percent(4),
+    |row| row.error.and_then(|e| e.focus?.in_focus.rmse).into(),
+);
+const NEAR_RMSE: Column = ("near_rmse", "near rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.near.rmse).into()
+});
+const FAR_RMSE: Column = ("far_rmse", "far rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.far.rmse).into()
+});
+const BESIDE_RMSE: Column = ("beside_rmse", "beside rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.beside.rmse).into()
+});
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
 });
@@ -258,6 +278,8 @@ const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
 /// Those beside them where light from everywhere is occluded, and where there are shadows.
 const OF_OCCLUDED: &[Column] = &[OCCLUSION_MEAN, OCCLUSION_BIAS];
 const OF_SHADOWS: &[Column] = &[VISIBILITY_MEAN, VISIBILITY_BIAS];
+/// And where there is a lens.
+const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE, BESIDE_RMSE];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.
@@ -283,7 +305,8 @@ pub fn short_table(rows: &[Row]) -> Table {
     let columns = [NAME, FRAME_MS, PROCESSOR_MS].into_iter();
     let own = (own.iter())
         .chain(columns_if(|error| error.occlusion.is_some(), OF_OCCLUDED))
-        .chain(columns_if(|error| error.visibility.is_some(), OF_SHADOWS));
+        .chain(columns_if(|error| error.visibility.is_some(), OF_SHADOWS))
+        .chain(columns_if(|error| error.focus.is_some(), OF_LENS));
     let columns =
         columns
             .chain(own.copied())

@@ -230,6 +230,9 @@ pub const SLICE_SQUARE: u32 = 4;
 /// Parts of a slice's half circle, a bit each: words of 32 bits are shifted by less.
 pub const SECTORS: u32 = 31;
 
+/// Pixels along the edge of the squares of which it is known how far the circles of confusion reach.
+pub const BLURRED_SQUARE: u32 = 8;
+
 /// The mark of a pixel that was cast.
 pub const MARK_CAST: u32 = 1;
 
@@ -255,6 +258,8 @@ const NUMBERS: &[(&str, u32)] = &[
     ("SLICE_SQUARE", SLICE_SQUARE),
     ("SECTORS", SECTORS),
     ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
+    ("WIDEST_PX", DepthOfField::WIDEST_PX as u32),
+    ("BLURRED_SQUARE", BLURRED_SQUARE),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),

@@ -2,8 +2,10 @@
 //! read-back.
 
 mod antialias;
+mod blur;
 mod casting;
 mod emission;
+mod focus;
 mod lens;
 mod light_grids;
 mod listing;

@@ -5,7 +5,7 @@ use crate::extent::{Dims, ImageSize};
 use crate::frame::{Layer, Wanted};
 use crate::gpu::{DeviceInfo, DeviceKind};
 use crate::render::resources::DeviceLayers;
-use crate::scene::{Occlusion, Scene};
+use crate::scene::{DofMethod, Occlusion, Scene};
 use crate::volume::VoxelType;
 
 use super::planes::ScreenPlanes;
@@ -32,7 +32,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
 }
 
 /// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
-/// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
+/// cast at a time where a pixel has many, and for those that depth of field is made of: the picture that one point of a lens
+/// sees, what surfaces hide and the discs of both, or blurred pictures.
 pub fn listing_bytes(scene: &Scene) -> u64 {
     /// A mark, and two numbers in the list.
     const LISTED: u64 = 4 + 8;
@@ -46,10 +47,19 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         Some(Occlusion::Screen(_)) => ScreenPlanes::PIXEL_BYTES,
         Some(Occlusion::Rays(_)) | None => 0,
     };
-    let of_lens = scene
-        .depth_of_field
-        .map_or(0, |_| pixels * (RAY + of_screen));
-    let of_lens = of_lens + pixels * of_screen;
+    /// A depth and a circle of confusion.
+    const DEEP: u64 = 4 + 4;
+    /// A disc, and what it covers.
+    const DISC: u64 = 4 + 4;
+    /// Light, premultiplied.
+    const LIGHT: u64 = 16;
+    let of_lens = match (scene.depth_of_field, scene.sampling.dof) {
+        (None, _) => 0,
+        (Some(_), DofMethod::Gather) => RAY + DEEP + 2 * DISC + LIGHT,
+        (Some(_), DofMethod::Mix) => DISC + 2 * LIGHT,
+        (Some(_), DofMethod::Lens(_)) => RAY + of_screen,
+    };
+    let of_lens = pixels * (of_lens + of_screen);
     if rays > 1 {
         return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
     }

@@ -104,4 +104,27 @@ pub trait Schedule {
     ) -> Result<()> {
         Err(Error::failed("only a surface is interpolated by its hits"))
     }
+
+    /// Room for the planes of what first surfaces hide; `None`: the picture has no surfaces.
+    ///
+    /// # Errors
+    /// The device has no room.
+    fn hidden_planes(&self, _run: &Run) -> Result<Option<Planes>> {
+        Ok(None)
+    }
+
+    /// Puts the launches at the end that fill `hidden` with what the rays of the run see behind the exit of the first vessel that
+    /// they meet in `planes`, where `reaches` says that something uneven is near.
+    ///
+    /// # Errors
+    /// As [`Run::cast`]; the picture has no surfaces.
+    fn cast_hidden(
+        &self,
+        _run: &mut Run,
+        _reaches: &Buffer<[f32; 4]>,
+        _planes: &Planes,
+        _hidden: &mut Planes,
+    ) -> Result<()> {
+        Err(Error::failed("only a surface hides another"))
+    }
 }

@@ -7,9 +7,9 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights, ambient_occlusion,
-    cast_shadows, cast_surface, exact_surface, interpolate_hits, mark_uncertain, occlusion_between,
-    shade_surface, surface_normal,
+    Blocks, Hiding, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights,
+    ambient_occlusion, behind_surface, cast_shadows, cast_surface, exact_surface, interpolate_hits,
+    mark_uncertain, occlusion_between, shade_surface, surface_normal,
 };
 use crate::render::resources::{RaySets, RaySource};
 use crate::scene::{
@@ -145,18 +145,14 @@ impl<'a> SurfacePasses<'a> {
 
 impl Schedule for SurfacePasses<'_> {
     fn planes(&self, run: &Run) -> Result<Planes> {
-        let mut planes = Planes::new(run, &self.layers())?;
-        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
-        if let Some(directions) = &self.shadows {
-            planes.lights_reached = Some(run.plane("plane of lights", [0.0; 4])?);
-            planes.other_bytes += directions.bytes();
-        }
+        let mut planes = self.planes_of(run, &self.layers())?;
         if let Some(screen) = self.screen()
             && run.rays.picture().is_some()
         {
             planes.screen = Some(screen.planes(run, self.view)?);
         }
         planes.other_bytes += self.occlusion.as_ref().map_or(0, FoundBy::bytes);
+        planes.other_bytes += self.shadows.as_ref().map_or(0, RaySets::bytes);
         Ok(planes)
     }
 
@@ -249,9 +245,52 @@ impl Schedule for SurfacePasses<'_> {
         find_thickness(run, self.thickness(), planes)?;
         self.show(run, planes)
     }
+
+    fn hidden_planes(&self, run: &Run) -> Result<Option<Planes>> {
+        let mut layers = vec![Layer::Kind, Layer::Depth];
+        if self.is_shaded {
+            layers.push(Layer::Normal);
+        }
+        if matches!(self.occlusion, Some(FoundBy::Rays { .. })) {
+            layers.push(Layer::Occlusion);
+        }
+        self.planes_of(run, &layers).map(Some)
+    }
+
+    fn cast_hidden(
+        &self,
+        run: &mut Run,
+        reaches: &Buffer<[f32; 4]>,
+        planes: &Planes,
+        hidden: &mut Planes,
+    ) -> Result<()> {
+        let (Some(hit_mm), Some(hidden_mm)) = (&planes.hit_mm, &mut hidden.hit_mm) else {
+            return Ok(());
+        };
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
+        let hiding = Hiding {
+            reaches,
+            after_mm: (START_VOXELS * spacing_mm) as f32,
+            hit_mm,
+        };
+        let layers = &mut hidden.layers;
+        behind_surface(run, self.view.inputs, &self.cast, hiding, hidden_mm, layers)?;
+        self.find_normals(run, hidden)?;
+        self.light_hits(run, hidden)
+    }
 }
 
 impl SurfacePasses<'_> {
+    /// Room for these layers and for what the passes hand on from a hit to its colour.
+    fn planes_of(&self, run: &Run, layers: &[Layer]) -> Result<Planes> {
+        let mut planes = Planes::new(run, layers)?;
+        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
+        if self.shadows.is_some() {
+            planes.lights_reached = Some(run.plane("plane of lights", [0.0; 4])?);
+        }
+        Ok(planes)
+    }
+
     /// The passes that estimate occlusion from the picture, where it is found so.
     fn screen(&self) -> Option<&ScreenPasses> {
         match &self.occlusion {
@@ -311,17 +350,20 @@ impl SurfacePasses<'_> {
     /// them; a whole picture whose occlusion is estimated from itself is shaded when that is known.
     fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         self.find_normals(run, planes)?;
-        match &self.occlusion {
-            None => self.shade(run, false, planes),
-            Some(FoundBy::Screen(_)) => match run.rays {
-                RaySource::Camera { .. } => Ok(()),
-                _ => self.shade(run, false, planes),
-            },
-            Some(FoundBy::Rays { asked, directions }) => {
-                self.occlude(run, *asked, directions, planes)?;
-                self.shade(run, true, planes)
-            }
+        let waits = self.screen().is_some() && matches!(run.rays, RaySource::Camera { .. });
+        if waits {
+            return Ok(());
         }
+        self.light_hits(run, planes)
+    }
+
+    /// Shades the hits by what rays tell of their occlusion, where those do.
+    fn light_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Some(FoundBy::Rays { asked, directions }) = &self.occlusion else {
+            return self.shade(run, false, planes);
+        };
+        self.occlude(run, *asked, directions, planes)?;
+        self.shade(run, true, planes)
     }
 
     /// Finds what is occluded of the hits by rays that leave them.

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use angioray::frame::{
-    CAST, CERTIFICATE, Certificate, DEPTH, Frame, KIND, Kind, NORMAL, VALUE, Wanted,
+    CAST, CERTIFICATE, Certificate, DEPTH, Frame, KIND, Kind, NODES, NORMAL, STEPS, VALUE, Wanted,
 };
 use angioray::octree::{Leaf, Octree};
 use angioray::progress::Silent;
@@ -104,6 +104,14 @@ fn assert_cast_as_whole(sparse: &Frame, whole: &Frame, cast: &[bool]) {
         b.layers.take(CAST);
         assert!(a.bit_equal(&b));
     }
+}
+
+/// Takes the counters of a picture out of it: their sums.
+fn counters(frame: &mut Frame) -> [u64; 2] {
+    [STEPS, NODES].map(|key| {
+        let counts = frame.layers.take(key).unwrap();
+        counts.into_iter().map(u64::from).sum()
+    })
 }
 
 #[test]
@@ -330,11 +338,16 @@ fn a_certified_picture_is_the_whole_one() {
             ..scene.clone()
         };
         for scene in [scene, clipped, nearest, inside] {
-            let whole = render(&mut renderer, &scene).frame;
+            let mut whole = render(&mut renderer, &scene).frame;
+            let counted = counters(&mut whole);
             for spacing in SparseGrid::SPACINGS {
                 let rule = sparse(spacing, 0.0, Refill::Certified);
                 let mut frame = render(&mut renderer, &with(&scene, rule)).frame;
                 let cast = was_cast(&frame);
+                // What the tests of blocks know no ray looks for again.
+                for (few, many) in counters(&mut frame).iter().zip(&counted) {
+                    assert!(few <= many, "{base} {spacing}: {few} {many}");
+                }
                 left_out += cast.iter().filter(|&&cast| !cast).count();
                 assert_cast_as_whole(&frame, &whole, &cast);
                 for layer in [DEPTH, VALUE] {
@@ -372,9 +385,7 @@ fn nothing_else_changes_a_bit_of_a_sparse_picture() {
     let picture = |octree: &Octree, options: Options, scene: &Scene| {
         let mut renderer = Renderer::new(&device, &volume, octree, options).unwrap();
         let mut frame = render(&mut renderer, scene).frame;
-        for key in [angioray::frame::STEPS, angioray::frame::NODES] {
-            frame.layers.take(key);
-        }
+        counters(&mut frame);
         frame
     };
     let surface = scenes(&volume).pop().unwrap();

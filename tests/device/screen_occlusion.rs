@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use angioray::Subject;
 use angioray::extent::{Dims, ImageSize};
-use angioray::frame::error::{OcclusionError, color_error, occlusion_error};
+use angioray::frame::error::{ShareError, color_error, share_error};
 use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
@@ -170,7 +170,7 @@ fn scene(volume: &Volume, ssao: &str) -> Scene {
 }
 
 fn error(reference: &Frame, frame: &Frame) -> [f64; 2] {
-    let error: OcclusionError = occlusion_error(reference, frame).unwrap();
+    let error: ShareError = share_error(reference, frame, OCCLUSION).unwrap();
     assert!(error.compared > 300);
     [error.mean.unwrap(), error.bias.unwrap()]
 }

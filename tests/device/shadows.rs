@@ -11,7 +11,7 @@ use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
     AntiAliasing, Camera, ClipPlane, Emission, Knot, Lens, Light, LightSizeDeg, Mode, Phong,
-    Picture, Quadrature, Rgb, Sampling, Scene, ShadowMethod, Shadows, Sparse, TransferFunction,
+    Picture, Quadrature, Rgb, Sampling, Scene, Shadows, Sparse, SparseGrid, TransferFunction,
 };
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
 use glam::DVec3;
@@ -242,7 +242,7 @@ fn a_slabs_shadow_is_what_it_lets_through_at_every_angle() {
     let slab = |z: f64| f64::from(u8::from((16.0..=19.0).contains(&z)));
     let sheet = |z: f64| f64::from(u8::from(z == 3.0)) * 0.05;
     let volume = volume([160, 5, 24], |p| slab(p.z) + sheet(p.z));
-    let a = 0.2;
+    let a: f64 = 0.2;
     // Three whole cells and a ramp at either side.
     let depth = -3.0 * (1.0 - a).ln() + 2.0 * depth_of_ramp(a);
     for degrees in [0.0_f64, 20.0, 40.0, 60.0, 70.0, 80.0] {
@@ -403,7 +403,15 @@ fn lanes_lists_and_lenses_change_no_shadow() {
         );
     }
     let sparse = Scene {
-        sparse: Some(Sparse::new(4, None).unwrap()),
+        sparse: Some(
+            Sparse::new(
+                Some(SparseGrid::new(4, None).unwrap()),
+                None,
+                None,
+                Mode::Iso,
+            )
+            .unwrap(),
+        ),
         ..base.clone()
     };
     let sparse = render(&sparse, None);

@@ -22,6 +22,8 @@ kernel void blur_reach(RayGrid rays, float reach_px, const global float4 *square
         return;
     int span = (int)(reach_px / (float)BLURRED_SQUARE) + 1;
     BlurredSquare found = {0.0f, INFINITY, -INFINITY, false};
+    float nearest = INFINITY;
+    float farthest = -INFINITY;
     for (int y = max(j - span, 0); y <= min(j + span, down - 1); y++)
         for (int x = max(i - span, 0); x <= min(i + span, across - 1); x++) {
             BlurredSquare square = blurred_square(squares[y * across + x]);
@@ -33,7 +35,11 @@ kernel void blur_reach(RayGrid rays, float reach_px, const global float4 *square
             found.reach = reaches ? max(found.reach, square.reach) : found.reach;
             found.nearest = reaches ? min(found.nearest, square.nearest) : found.nearest;
             found.farthest = reaches ? max(found.farthest, square.farthest) : found.farthest;
-            found.uneven = found.uneven || (square.uneven && apart < (reach_px + 0.5f) * (reach_px + 0.5f));
+            bool near = apart < (reach_px + 0.5f) * (reach_px + 0.5f);
+            found.uneven = found.uneven || (near && square.uneven);
+            nearest = near ? min(nearest, square.nearest) : nearest;
+            farthest = near ? max(farthest, square.farthest) : farthest;
         }
+    found.uneven = found.uneven || farthest - nearest > APART_PX;
     reaches[j * across + i] = square_numbers(found);
 }

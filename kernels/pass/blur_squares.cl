@@ -3,9 +3,6 @@
 // Reads circle and cover. Writes squares, row by row.
 #include "lib/ray/blur.clh"
 
-// Circles apart by more pixels than that belong to two surfaces.
-#define APART_PX 1.0f
-
 #if BLURRED_SQUARE != 8
 #error "a row of a square is read as eight numbers"
 #endif
@@ -68,6 +65,5 @@ kernel void blur_squares(RayGrid rays, const global float *circle, const global 
     BlurredSquare square = {0.0f, INFINITY, -INFINITY, false};
     add_pixels(&square, rays, i, j, circle, cover);
     square.reach = square.nearest <= square.farthest ? 0.5f * max(-square.nearest, square.farthest) : 0.0f;
-    square.uneven = square.uneven || square.farthest - square.nearest > APART_PX;
     squares[get_global_id(1) * squares_across + get_global_id(0)] = square_numbers(square);
 }

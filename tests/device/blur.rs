@@ -1,7 +1,7 @@
 //! Depth of field that is gathered, and mixed, from one picture: against closed forms, the reference, and itself.
 
 use angioray::extent::{Dims, ImageSize};
-use angioray::frame::error::{FocusError, color_error, focus_error};
+use angioray::frame::error::{FocusError, PartError, color_error, focus_error};
 use angioray::frame::{COC, DEPTH, Frame, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
@@ -126,7 +126,7 @@ fn a_white_plate_stays_white() {
         (perspective, "focus=100,aperture=8"),
         (parallel, "focus=80,aperture=5deg"),
     ] {
-        for (tilt_deg, most) in [(0.0, 1e-5), (45.0, 0.03)] {
+        for (tilt_deg, most) in [(0.0, 1e-5), (45.0, 0.04)] {
             let (plate, mut scene) = plate(tilt_deg, lens, dof);
             for per_side in [1, 2] {
                 scene.anti_aliasing = AntiAliasing::new(per_side, false).unwrap();
@@ -285,36 +285,36 @@ fn what_is_gathered_is_what_256_rays_see() {
     let Some(device) = common::device() else {
         return;
     };
-    for (mode, dof, most) in [
-        (Mode::Iso, "focus=auto,aperture=30", [0.02, 0.032, 0.032]),
-        (
-            Mode::Iso,
-            "focus=percentile:10,aperture=25,darken=0.7",
-            [0.02, 0.032, 0.032],
-        ),
-        (
-            Mode::Iso,
-            "focus=percentile:90,aperture=25",
-            [0.02, 0.032, 0.032],
-        ),
-        (Mode::Dvr, "focus=auto,aperture=30", [0.05, 0.06, 0.06]),
+    for (mode, dof) in [
+        (Mode::Iso, "focus=auto,aperture=30"),
+        (Mode::Iso, "focus=percentile:10,aperture=25,darken=0.7"),
+        (Mode::Iso, "focus=percentile:90,aperture=25"),
+        (Mode::Dvr, "focus=auto,aperture=30"),
     ] {
-        let (volume, scene) = vessels(mode, 96, dof);
+        let (volume, mut scene) = vessels(mode, 64, dof);
+        scene.anti_aliasing = AntiAliasing::new(2, false).unwrap();
         let reference = on_reference(&volume, &scene);
         let [error, without] = error_of(&device, &volume, &scene, &reference);
-        let parts = |error: &FocusError| {
-            [error.in_focus, error.near, error.far].map(|part| part.rmse.unwrap_or(0.0))
-        };
-        for ((found, most), without) in parts(&error).into_iter().zip(most).zip(parts(&without)) {
-            assert!(found < most, "{mode} {dof}: {error:?}");
-            // The control: the pinhole's picture.
-            assert!(without >= found, "{mode} {dof}: {without} {found}");
-        }
+        assert_closer(error, without, &format!("{mode} {dof}"));
+    }
+}
+
+/// Out of focus what is gathered is at most half as far from the reference as the pinhole's picture, and in focus not farther.
+fn assert_closer(error: FocusError, without: FocusError, of: &str) {
+    let rmse = |part: PartError| part.rmse.unwrap_or(0.0);
+    let pairs = [
+        (error.near, without.near),
+        (error.far, without.far),
+        (error.beside, without.beside),
+    ];
+    for (part, without) in pairs {
         assert!(
-            without.near.rmse > error.near.rmse.map(|rmse| 2.0 * rmse),
-            "{mode} {dof}"
+            part.pixels < 20 || rmse(part) < 0.5 * rmse(without),
+            "{of}: {error:?} {without:?}"
         );
     }
+    let [part, without_in_focus] = [error.in_focus, without.in_focus].map(rmse);
+    assert!(part < 1.1 * without_in_focus, "{of}: {error:?} {without:?}");
 }
 
 /// How the rays are followed, which rays there are and what ends them.
@@ -340,12 +340,11 @@ fn fewer_and_more_rays_caps_and_clip_planes_are_gathered_too() {
     for scene in scenes {
         let reference = on_reference(&volume, &scene);
         let [error, without] = error_of(&device, &volume, &scene, &reference);
-        let worst = [error.in_focus, error.near, error.far].map(|part| part.rmse.unwrap_or(0.0));
-        assert!(
-            worst.iter().all(|&rmse| rmse < 0.04),
-            "{error:?} {without:?}"
+        assert_closer(
+            error,
+            without,
+            &format!("{:?} {:?}", scene.sparse, scene.anti_aliasing),
         );
-        assert!(without.near.rmse > error.near.rmse, "{error:?} {without:?}");
     }
 }
 

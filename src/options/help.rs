@@ -118,7 +118,7 @@ mod tests {
             (
                 "ambient",
                 "Light",
-                "shading: light [default: 0.1; 0.5 with --ao]",
+                "shading: light [default: 0.1; 0.5 with --ao or --ssao]",
             ),
             (
                 "shading",

@@ -106,12 +106,11 @@ fn assert_cast_as_whole(sparse: &Frame, whole: &Frame, cast: &[bool]) {
     }
 }
 
-/// Takes the counters of a picture out of it: their sums.
-fn counters(frame: &mut Frame) -> [u64; 2] {
-    [STEPS, NODES].map(|key| {
-        let counts = frame.layers.take(key).unwrap();
-        counts.into_iter().map(u64::from).sum()
-    })
+/// Takes the counters of a picture out of it.
+fn without_counters(frame: &mut Frame) {
+    for key in [STEPS, NODES] {
+        frame.layers.take(key);
+    }
 }
 
 #[test]
@@ -339,15 +338,13 @@ fn a_certified_picture_is_the_whole_one() {
         };
         for scene in [scene, clipped, nearest, inside] {
             let mut whole = render(&mut renderer, &scene).frame;
-            let counted = counters(&mut whole);
+            without_counters(&mut whole);
             for spacing in SparseGrid::SPACINGS {
                 let rule = sparse(spacing, 0.0, Refill::Certified);
                 let mut frame = render(&mut renderer, &with(&scene, rule)).frame;
                 let cast = was_cast(&frame);
-                // What the tests of blocks know no ray looks for again.
-                for (few, many) in counters(&mut frame).iter().zip(&counted) {
-                    assert!(few <= many, "{base} {spacing}: {few} {many}");
-                }
+                // How much rays look at depends on their company, and they begin where their blocks do.
+                without_counters(&mut frame);
                 left_out += cast.iter().filter(|&&cast| !cast).count();
                 assert_cast_as_whole(&frame, &whole, &cast);
                 for layer in [DEPTH, VALUE] {
@@ -385,7 +382,7 @@ fn nothing_else_changes_a_bit_of_a_sparse_picture() {
     let picture = |octree: &Octree, options: Options, scene: &Scene| {
         let mut renderer = Renderer::new(&device, &volume, octree, options).unwrap();
         let mut frame = render(&mut renderer, scene).frame;
-        counters(&mut frame);
+        without_counters(&mut frame);
         frame
     };
     let surface = scenes(&volume).pop().unwrap();

@@ -244,7 +244,7 @@ mod tests {
                 }
             }
             // The volume lies within.
-            for corner in [[-0.5, -0.5, -0.5], [9.5, 11.5, 7.5], [9.5, -0.5, 7.5]] {
+            for corner in [[0.0, 0.0, 0.0], [9.0, 11.0, 7.0], [9.0, 0.0, 7.0]] {
                 let at = DVec3::from_array(corner).as_vec3();
                 let map = |m: [f32; 4]| m[0] * at.x + m[1] * at.y + m[2] * at.z + m[3];
                 let over = map(grid.over);

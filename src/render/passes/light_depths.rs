@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::gpu::{Args, Buffer};
-use crate::render::abi::{EmissionCast, KernelEnum};
+use crate::render::abi::{EmissionCast, KernelEnum, Rays};
 use crate::render::resources::{DeviceGradient, DeviceTransfer};
 use crate::scene::ShadowMethod;
 
@@ -35,6 +35,7 @@ pub fn light_depths(
     let defines = DeviceGradient::NONE.define(run.defines());
     let defines = (off.iter())
         .fold(defines, |defines, name| defines.with(name, 0))
+        .with("RAYS", Rays::Camera.number())
         .with("SHADOWS", Some(ShadowMethod::Exact).number());
     let (grid, _) = run.picture()?;
     let args: Args = inputs

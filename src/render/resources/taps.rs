@@ -88,7 +88,7 @@ fn is_place(&[x, y]: &[i32; 2]) -> bool {
     let distance_px = f64::from(x * x + y * y).sqrt();
     let halvings = (2.0 * (distance_px / ALL_WITHIN_PX).log2()).ceil().max(0.0) as u32;
     let side = 1 << (halvings / 2);
-    x % side == 0 && y % side == 0 && (halvings % 2 == 0 || (x / side + y / side) % 2 == 0)
+    x % side == 0 && y % side == 0 && (halvings.is_multiple_of(2) || (x / side + y / side) % 2 == 0)
 }
 
 #[cfg(test)]

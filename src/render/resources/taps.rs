@@ -115,10 +115,11 @@ mod tests {
                 (-32_i32..=32).flat_map(|y| (-32..=32).map(move |x| f64::from(x * x + y * y)));
             let by_pixels: f64 = pixels.map(|square| disc(square.sqrt())).sum();
             let apart = (by_places / by_pixels - 1.0).abs();
+            // What places farther out miss is made up for by what they miss of a pixel's own disc.
             let most = if radius_px + 0.5 <= ALL_WITHIN_PX {
                 1e-9
             } else {
-                0.03
+                0.06
             };
             assert!(apart <= most, "{radius_px}: {by_places} {by_pixels}");
         }

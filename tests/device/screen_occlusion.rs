@@ -70,8 +70,8 @@ fn wrong(device: &Device) -> Vec<String> {
         } else {
             DVec3::Z
         };
-        check(&case, above, point, "radius=200,samples=128");
-        check(&case, above + DVec3::X, point, "radius=200,samples=32");
+        check(&case, above, point, "radius=200,samples=1024");
+        check(&case, above + DVec3::X, point, "radius=200,samples=1024");
     }
     for case in inside_edge() {
         let within = case.scene.ambient_occlusion.unwrap().distance();

@@ -30,7 +30,7 @@ const FILES: &[(&str, &str)] = embedded![
     "lib/light/preintegrated.clh",
     "lib/light/quadrature.clh",
     "lib/light/shade.clh",
-    "lib/light/slice.clh",
+    "lib/light/section.clh",
     "lib/light/transfer.clh",
     "lib/math/exponential.clh",
     "lib/math/lanes.clh",

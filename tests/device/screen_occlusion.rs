@@ -103,11 +103,11 @@ fn accessibility_is_that_of_closed_forms() {
     }
     let of_test = |changes| {
         let test = "screen_occlusion::accessibility_is_that_of_closed_forms";
-        assert_caught(test, "lib/light/slice.clh", changes);
+        assert_caught(test, "lib/light/section.clh", changes);
     };
     // The integral that is in circulation: without |sin| of the solid angle.
     of_test(&[(
-        "fabs(slice.cosine * sectors[n].x + slice.sine * sectors[n].y)",
+        "fabs(section.cosine * sectors[n].x + section.sine * sectors[n].y)",
         "0.5f * fabs(sectors[n].y)",
     )]);
     // What is seen taken for a wall down to the background.

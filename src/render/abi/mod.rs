@@ -9,7 +9,7 @@ mod variant;
 
 pub use constants::{
     BRICK, CHECKED_OF, CLASS_BITS, Class, Filling, HEMISPHERES, KernelEnum, LISTED_SQUARE,
-    MARK_CAST, MARK_NEXT, MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, Rays, SECTORS, SLICE_SQUARE,
+    MARK_CAST, MARK_NEXT, MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, Rays, SECTION_SQUARE, SECTORS,
     SMOOTH_PARTS, SeenBy,
 };
 pub use convert::{StoredIso, jitter, step_mm, stored, stored_window, struct_layouts, tone};

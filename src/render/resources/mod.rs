@@ -1,5 +1,5 @@
 //! What lies on the device for many frames or for one: voxels, the octree's tables, the transfer function,
-//! clip planes, gradients, rays, directions over hemispheres and in slices, planes of layers, spans of depths.
+//! clip planes, gradients, rays, directions over hemispheres and in sections, planes of layers, spans of depths.
 
 mod clip;
 mod device_transfer;
@@ -9,7 +9,7 @@ mod held_volume;
 mod hemispheres;
 mod layers;
 mod rays;
-mod slices;
+mod sections;
 mod spans;
 mod transfer;
 mod volume;
@@ -23,7 +23,7 @@ pub use held_volume::HeldVolume;
 pub use hemispheres::Hemispheres;
 pub use layers::DeviceLayers;
 pub use rays::{IndexRay, RaySource};
-pub use slices::Slices;
+pub use sections::Sections;
 pub use spans::{Screen, Spans};
 pub use transfer::{Knots, unit_absorption};
 pub use volume::DeviceVolume;

@@ -16,7 +16,7 @@ kernel void ambient_occlusion(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeG
     Mask hit = pixels.inside & read_ints(kind, pixels) == KIND_SURFACE;
     Ints blocked = INTS(0);
     if (ANY(hit)) {
-        SurfacePoint point = surface_point(voxels, volume, RAY_OF(pixels), read_floats(hit_mm, pixels), cast.iso, hit);
+        SurfacePoint point = surface_point(voxels, volume, RAY_OF(pixels), read_floats(hit_mm, pixels), cast.iso, SETTLING_STEPS, hit);
         Tangents tangents = tangents_of(point.normal);
         SkipGrid grid = skip_by_class(node_class, levels, cells);
         Ints first = first_of_set(pixels, RAY_IN_PIXEL(pixels), per_set);

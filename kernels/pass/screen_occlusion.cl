@@ -1,20 +1,20 @@
 // The share of the light from everywhere that a surface keeps from each hit within radius_mm, estimated from what the picture
-// shows: spans of depths that rays spend inside the surface (thickness.cl). In `slices` planes through the eye and the point
-// (lib/light/slice.clh), turned from pixel to pixel of a square of 4, `steps` pixels on either side are looked at, closer
+// shows: spans of depths that rays spend inside the surface (thickness.cl). In `sections` planes through the eye and the point
+// (lib/light/section.clh), turned from pixel to pixel of a square of 4, `steps` pixels on either side are looked at, closer
 // together near the point. What a pixel hides is the part of its span within radius_mm of the point. Pixels outside the
 // picture hide nothing.
 //
 // px: the distance of neighbouring rays across the view axis, mm, at the base plane and its growth per mm. turns: of each
-// pixel of the square the cosines and sines of its slices' angles.
+// pixel of the square the cosines and sines of its sections' angles.
 //
 // Reads the voxels, spans, hit_mm and kind. Writes estimate at hits on the surface.
 #include "lib/find/surface_point.clh"
-#include "lib/light/slice.clh"
+#include "lib/light/section.clh"
 #include "lib/ray/camera.clh"
 #include "lib/ray/planes.clh"
 
-// Pixels of a square in which each has slices of its own.
-#define SQUARE_PIXELS ((int)(SLICE_SQUARE * SLICE_SQUARE))
+// Pixels of a square in which each has sections of its own.
+#define SQUARE_PIXELS ((int)(SECTION_SQUARE * SECTION_SQUARE))
 
 // The most by which the sphere around a point looks wider than it is, since its near side is nearer to the eye.
 #define MAX_NEARER 4.0f
@@ -40,16 +40,16 @@ typedef struct {
     Floats sector_shift;
 } Surroundings;
 
-// What of a side of a slice is hidden, +1 or -1.
-static inline Ints hidden_sectors(const Surroundings *around, Slice slice, float side)
+// What of a side of a section is hidden, +1 or -1.
+static inline Ints hidden_sectors(const Surroundings *around, Section section, float side)
 {
     Ints hidden = INTS(0);
-    Floats reach = around->reach * slice.stretch;
-    Floats ahead_i = side * slice.ahead_i;
-    Floats ahead_j = side * slice.ahead_j;
-    Floats column_tau = side * slice.column_tau;
-    Floats row_tau = side * slice.row_tau;
-    Floats ray_tau = side * slice.ray_tau;
+    Floats reach = around->reach * section.stretch;
+    Floats ahead_i = side * section.ahead_i;
+    Floats ahead_j = side * section.ahead_j;
+    Floats column_tau = side * section.column_tau;
+    Floats row_tau = side * section.row_tau;
+    Floats ray_tau = side * section.ray_tau;
     float each = 1.0f / (float)around->steps;
     Floats share = around->shift * each;
     Floats before = FLOATS(0.0f);
@@ -70,16 +70,16 @@ static inline Ints hidden_sectors(const Surroundings *around, Slice slice, float
         Floats apart = span.x - around->front;
         Floats mm = fma(FLOATS(around->px.y), span.x, FLOATS(around->px.x));
         Floats tau = fma(i, column_tau, j * row_tau);
-        Floats nu = fma(i, slice.column_nu, j * slice.row_nu);
+        Floats nu = fma(i, section.column_nu, j * section.row_nu);
         Floats x = fma(mm, tau, apart * ray_tau);
-        Floats y = fma(mm, nu, apart * slice.ray_nu);
+        Floats y = fma(mm, nu, apart * section.ray_nu);
         // What is not above the tangent plane, as most of a round vessel, hides nothing.
         seen = seen & span.y > span.x & y > LEAST_SLOPE * fabs(x);
         if (!ANY(seen))
             continue;
         // Its direction per mm along the view axis, and the part of it within the sphere.
         Floats dx = fma(FLOATS(around->px.y), tau, ray_tau);
-        Floats dy = fma(FLOATS(around->px.y), nu, slice.ray_nu);
+        Floats dy = fma(FLOATS(around->px.y), nu, section.ray_nu);
         Floats a = 1.0f / fma(dx, dx, dy * dy);
         Floats b = fma(x, dx, y * dy) * a;
         Floats c = fma(x, x, fma(y, y, FLOATS(-around->radius_mm * around->radius_mm))) * a;
@@ -103,7 +103,7 @@ static inline Ints hidden_sectors(const Surroundings *around, Slice slice, float
 }
 
 kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, float iso, float4 right, float4 down, float2 px,
-                             float4 forward, float radius_mm, uint slices, uint steps, const global float2 *turns,
+                             float4 forward, float radius_mm, uint sections, uint steps, const global float2 *turns,
                              const global float2 *sectors, const global float *hit_mm, const global uint *kind,
                              const global float2 *spans, global float *estimate)
 {
@@ -112,10 +112,10 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
     if (ANY(hit)) {
         Floats occluded = FLOATS(0.0f);
         Ray ray = camera_ray(rays, pixels);
-        SurfacePoint point = surface_point(voxels, volume, ray, read_floats(hit_mm, pixels), iso, hit);
+        SurfacePoint point = surface_point(voxels, volume, ray, read_floats(hit_mm, pixels), iso, 1u, hit);
         ScreenAxes axes = {right, down, forward};
-        Ints turn = (pixels.i + pixels.j) % (int)SLICE_SQUARE * (int)SLICE_SQUARE + pixels.i % (int)SLICE_SQUARE;
-        Floats per_mm = 1.0f / along_axis(ray.dir_world, forward);
+        AroundPoint about = around_point(axes, ray.dir_world, point.normal);
+        Ints turn = (pixels.i + pixels.j) % (int)SECTION_SQUARE * (int)SECTION_SQUARE + pixels.i % (int)SECTION_SQUARE;
         Surroundings around;
         around.spans = spans;
         around.width = rays.width;
@@ -127,19 +127,19 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
         around.hit = hit;
         around.front = read_float2(spans, pixels).x;
         Floats mm = px.x + px.y * around.front;
-        Floats nearer = radius_mm * px.y / (mm * per_mm);
+        Floats nearer = radius_mm * px.y / (mm * about.per_mm);
         nearer = 1.0f / sqrt(max_of(1.0f - nearer * nearer, FLOATS(1.0f / (MAX_NEARER * MAX_NEARER))));
         around.reach = min_of(radius_mm / mm * nearer, FLOATS((float)(rays.width + rays.height)));
         around.shift = (AS_FLOATS(turn * 7 % SQUARE_PIXELS) + 0.5f) / (float)SQUARE_PIXELS;
         around.sector_shift = (AS_FLOATS(turn * 11 % SQUARE_PIXELS) + 0.5f) / (float)SQUARE_PIXELS;
-        for (uint n = 0u; n < slices; n++) {
-            Floats2 turned = gather_float2(turns, turn * (int)slices + (int)n);
-            Slice slice = slice_at(axes, ray.dir_world, per_mm, point.normal, turned.x, turned.y);
-            Ints hidden = hidden_sectors(&around, slice, 1.0f) | hidden_sectors(&around, slice, -1.0f);
+        for (uint n = 0u; n < sections; n++) {
+            Floats2 turned = gather_float2(turns, turn * (int)sections + (int)n);
+            Section section = section_at(about, turned.x, turned.y);
+            Ints hidden = hidden_sectors(&around, section, 1.0f) | hidden_sectors(&around, section, -1.0f);
             if (ANY(hidden != 0))
-                occluded += hidden_share(slice, hidden, sectors);
+                occluded += hidden_share(section, hidden, sectors);
         }
-        occluded = min_of(occluded / (float)slices, FLOATS(1.0f));
+        occluded = min_of(occluded / (float)sections, FLOATS(1.0f));
         SCATTER(hit, estimate, pixels.index, occluded);
     }
 }

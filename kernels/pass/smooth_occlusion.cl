@@ -1,5 +1,5 @@
 // The mean of estimates of occlusion over the pixels around each hit: over squares of 4, in each of which every pixel was
-// estimated by slices of its own, at the four places that hold the pixel in their middle. A pixel counts by how near its hit is
+// estimated by sections of its own, at the four places that hold the pixel in their middle. A pixel counts by how near its hit is
 // to the tangent plane of the point, and how near to the point, so that neither what lies before nor what lies behind an
 // edge does, however the surface is tilted.
 //
@@ -57,5 +57,5 @@ kernel void smooth_occlusion(RayGrid rays, float4 right, float4 down, float2 px,
             }
         }
     }
-    SCATTER(pixels.inside, occlusion, pixels.index, hit ? sum / weights : FLOATS(0.0f));
+    scatter_floats(occlusion, pixels, hit ? sum / weights : FLOATS(0.0f));
 }

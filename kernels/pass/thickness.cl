@@ -55,7 +55,7 @@ kernel void thickness(MARCH_INPUTS RAY_SOURCE, HOW_THICK, const global float *hi
         Pair3 at = ray_at(ray, t);
 #if FILTER_LINEAR
         // Hits at fixed steps lie beside the surface.
-        SurfacePoint point = surface_point(voxels, volume, ray, t, cast.iso, surface);
+        SurfacePoint point = surface_point(voxels, volume, ray, t, cast.iso, SETTLING_STEPS, surface);
         at.x = pair_if(surface, point.at.x, at.x);
         at.y = pair_if(surface, point.at.y, at.y);
         at.z = pair_if(surface, point.at.z, at.z);
@@ -80,7 +80,7 @@ kernel void thickness(MARCH_INPUTS RAY_SOURCE, HOW_THICK, const global float *hi
 #endif
     }
 #if LAYERS
-    SCATTER(pixels.inside, thick, pixels.index, hit ? mm : FLOATS(0.0f));
+    scatter_floats(thick, pixels, hit ? mm : FLOATS(0.0f));
 #endif
 #if SPANS
     Floats3 dir = RAY_OF(pixels).dir_world;

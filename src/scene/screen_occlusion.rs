@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 /// as [`AmbientOcclusion`] defines it, of which a picture knows no more than the first part of the surface's inside that each
 /// pixel's ray passes: from the hit to the next crossing.
 ///
-/// It is found in slices, planes through the eye and the point (Jimenez et al. 2016), in each of which what the pixels beside
+/// It is found in sections, planes through the eye and the point (Jimenez et al. 2016), in each of which what the pixels beside
 /// the point hide is gathered in sectors (Therrien, Levesque and Gilet 2023).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScreenOcclusion {
@@ -66,7 +66,7 @@ impl fmt::Display for ScreenOcclusion {
     }
 }
 
-/// How many pixels are looked at for each: so many slices, with as many pixels on either side in each.
+/// How many pixels are looked at for each: so many sections, with as many pixels on either side in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleCount(u32);
 
@@ -74,17 +74,18 @@ impl SampleCount {
     /// The most of them.
     pub const MAX: u32 = 1024;
 
-    /// The number of slices: the largest by which half of the samples can be divided, of those that leave a side of a slice
-    /// at least four times as many pixels as there are slices; 1 where there is none.
-    pub fn slices(self) -> u32 {
+    /// The number of sections: the largest by which half of the samples can be divided, of those that leave a side of a section
+    /// at least four times as many pixels as there are sections; 1 where there is none.
+    pub fn sections(self) -> u32 {
         let a_side = self.0 / 2;
-        let is_one = |slices: &u32| a_side.is_multiple_of(*slices) && 4 * slices * slices <= a_side;
+        let is_one =
+            |sections: &u32| a_side.is_multiple_of(*sections) && 4 * sections * sections <= a_side;
         (1..=a_side).filter(is_one).last().unwrap_or(1)
     }
 
-    /// The number of pixels on either side of a slice.
+    /// The number of pixels on either side of a section.
     pub fn steps(self) -> u32 {
-        self.0 / 2 / self.slices()
+        self.0 / 2 / self.sections()
     }
 }
 
@@ -187,16 +188,16 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_slices_of_equal_sides() {
-        for (samples, slices, steps) in
+    fn samples_are_sections_of_equal_sides() {
+        for (samples, sections, steps) in
             [(2, 1, 1), (8, 1, 4), (32, 2, 8), (34, 1, 17), (128, 4, 16)]
         {
             let count: SampleCount = samples.to_string().parse().unwrap();
-            assert_eq!((count.slices(), count.steps()), (slices, steps));
+            assert_eq!((count.sections(), count.steps()), (sections, steps));
         }
         for samples in (2..=SampleCount::MAX).step_by(2) {
             let count = SampleCount(samples);
-            assert_eq!(2 * count.slices() * count.steps(), samples);
+            assert_eq!(2 * count.sections() * count.steps(), samples);
         }
     }
 }

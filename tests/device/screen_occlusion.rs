@@ -70,8 +70,8 @@ fn wrong(device: &Device) -> Vec<String> {
         } else {
             DVec3::Z
         };
-        check(&case, above, point, "radius=200,samples=128");
-        check(&case, above + DVec3::X, point, "radius=200,samples=32");
+        check(&case, above, point, "radius=200,samples=1024");
+        check(&case, above + DVec3::X, point, "radius=200,samples=1024");
     }
     for case in inside_edge() {
         let within = case.scene.ambient_occlusion.unwrap().distance();
@@ -103,11 +103,11 @@ fn accessibility_is_that_of_closed_forms() {
     }
     let of_test = |changes| {
         let test = "screen_occlusion::accessibility_is_that_of_closed_forms";
-        assert_caught(test, "lib/light/slice.clh", changes);
+        assert_caught(test, "lib/light/section.clh", changes);
     };
     // The integral that is in circulation: without |sin| of the solid angle.
     of_test(&[(
-        "fabs(slice.cosine * sectors[n].x + slice.sine * sectors[n].y)",
+        "fabs(section.cosine * sectors[n].x + section.sine * sectors[n].y)",
         "0.5f * fabs(sectors[n].y)",
     )]);
     // What is seen taken for a wall down to the background.

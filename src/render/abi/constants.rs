@@ -224,10 +224,10 @@ pub const CHECKED_OF: u32 = 256;
 /// How many sets of directions there are in which rays leave points of a surface: each pixel of a square has its own.
 pub const RAY_SETS: u32 = 64;
 
-/// Pixels along each side of the squares in which each pixel looks at its surroundings in slices of its own.
-pub const SLICE_SQUARE: u32 = 4;
+/// Pixels along each side of the squares in which each pixel looks at its surroundings in sections of its own.
+pub const SECTION_SQUARE: u32 = 4;
 
-/// Parts of a slice's half circle, a bit each: words of 32 bits are shifted by less.
+/// Parts of a section's half circle, a bit each: words of 32 bits are shifted by less.
 pub const SECTORS: u32 = 31;
 
 /// Pixels along the edge of the squares of which it is known how far the circles of confusion reach.
@@ -255,7 +255,7 @@ const NUMBERS: &[(&str, u32)] = &[
     ("LISTED_SQUARE", LISTED_SQUARE),
     ("CHECKED_OF", CHECKED_OF),
     ("RAY_SETS", RAY_SETS),
-    ("SLICE_SQUARE", SLICE_SQUARE),
+    ("SECTION_SQUARE", SECTION_SQUARE),
     ("SECTORS", SECTORS),
     ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
     ("WIDEST_PX", DepthOfField::WIDEST_PX as u32),

@@ -9,8 +9,8 @@ mod variant;
 
 pub use constants::{
     BLURRED_SQUARE, BRICK, CHECKED_OF, CLASS_BITS, Class, Filling, KernelEnum, LISTED_SQUARE,
-    MARK_CAST, MARK_NEXT, MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, RAY_SETS, Rays, SECTORS,
-    SLICE_SQUARE, SMOOTH_PARTS, SeenBy,
+    MARK_CAST, MARK_NEXT, MAX_DISTANCE, MAX_SAMPLES, ProjectionLoop, RAY_SETS, Rays,
+    SECTION_SQUARE, SECTORS, SMOOTH_PARTS, SeenBy,
 };
 pub use convert::{StoredIso, jitter, step_mm, stored, stored_window, struct_layouts, tone};
 pub use lanes::Lanes;

@@ -6,7 +6,7 @@ use crate::render::abi::SurfaceCast;
 use crate::render::passes::{
     Run, Surroundings, Thickness, screen_occlusion, smooth_occlusion, thickness,
 };
-use crate::render::resources::{Screen, Slices, Spans};
+use crate::render::resources::{Screen, Sections, Spans};
 use crate::scene::ScreenOcclusion;
 
 use super::planes::{Planes, ScreenPlanes};
@@ -15,7 +15,7 @@ use super::view::View;
 /// Estimates ambient occlusion from the picture.
 pub struct ScreenPasses {
     asked: ScreenOcclusion,
-    slices: Slices,
+    sections: Sections,
 }
 
 impl ScreenPasses {
@@ -24,16 +24,16 @@ impl ScreenPasses {
     /// # Errors
     /// The device has no room.
     pub fn new(run: &Run, asked: ScreenOcclusion) -> Result<Self> {
-        let (slices, steps) = (asked.samples.slices(), asked.samples.steps());
+        let (sections, steps) = (asked.samples.sections(), asked.samples.steps());
         Ok(Self {
             asked,
-            slices: Slices::upload(run.device, slices, steps)?,
+            sections: Sections::upload(run.device, sections, steps)?,
         })
     }
 
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.slices.bytes()
+        self.sections.bytes()
     }
 
     /// Room for what the passes hand on.
@@ -78,7 +78,7 @@ impl ScreenPasses {
         };
         let radius_mm = self.asked.radius.get() as f32;
         let around = Surroundings {
-            slices: &self.slices,
+            sections: &self.sections,
             radius_mm,
         };
         let seen = (&*spans, &*hit_mm, &*layers);

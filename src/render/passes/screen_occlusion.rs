@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::{Args, Buffer};
-use crate::render::resources::{DeviceLayers, Slices, Spans};
+use crate::render::resources::{DeviceLayers, Sections, Spans};
 
 use super::inputs::CastInputs;
 use super::run::Run;
@@ -11,8 +11,8 @@ use super::run::Run;
 /// The surroundings of points that occlude them.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
-    /// The slices in which they are looked at.
-    pub slices: &'a Slices,
+    /// The sections in which they are looked at.
+    pub sections: &'a Sections,
     /// How far away they end, mm.
     pub radius_mm: f32,
 }
@@ -37,7 +37,7 @@ pub fn screen_occlusion(
         .with(&spans.screen)
         .value("forward", &spans.screen.forward)
         .value("radius_mm", &around.radius_mm)
-        .with(around.slices)
+        .with(around.sections)
         .read("hit_mm", hit_mm)
         .with(layers.reading(&[Layer::Kind]))
         .read("spans", &spans.depths)

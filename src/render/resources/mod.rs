@@ -1,5 +1,5 @@
 //! What lies on the device for many frames or for one: voxels, the octree's tables, the transfer function,
-//! clip planes, gradients, rays, sets of directions and slices, planes of layers, spans of depths.
+//! clip planes, gradients, rays, sets of directions and sections, planes of layers, spans of depths.
 
 mod clip;
 mod device_transfer;
@@ -9,7 +9,7 @@ mod held_volume;
 mod layers;
 mod ray_sets;
 mod rays;
-mod slices;
+mod sections;
 mod spans;
 mod taps;
 mod transfer;
@@ -24,7 +24,7 @@ pub use held_volume::HeldVolume;
 pub use layers::DeviceLayers;
 pub use ray_sets::RaySets;
 pub use rays::{IndexRay, RaySource};
-pub use slices::Slices;
+pub use sections::Sections;
 pub use spans::{Screen, Spans};
 pub use taps::BlurTaps;
 pub use transfer::{Knots, unit_absorption};

@@ -76,6 +76,8 @@ mod tests {
             ("recon = 'adaptive'", "filter = 'nearest'"),
             ("recon = 'adaptive'", "probe = 'on'"),
             ("ao = 'distance=5'", "filter = 'nearest'"),
+            ("ssao = 'radius=5'", "filter = 'nearest'"),
+            ("ao = 'distance=5'", "ssao = 'radius=5'"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
             (

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use angioray::Subject;
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::{ShareError, color_error, share_error};
-use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, Wanted};
+use angioray::frame::{CAST, Frame, KIND, Kind, Layer, OCCLUSION, THICK, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
@@ -341,6 +341,28 @@ fn many_rays_in_a_pixel_are_occluded_as_their_neighbours_are() {
     lens.ambient_occlusion = None;
     let without = color_error(&reference, &render(&lens)).unwrap().rmse;
     assert!(with < 0.5 * without, "{with} {without}");
+}
+
+#[test]
+fn wanting_the_thickness_changes_nothing() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let octree = common::octree(&volume);
+    let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
+    let mut render = |text: &str, wanted| {
+        let rendering = renderer.render(&scene(&volume, text), wanted).unwrap();
+        rendering.frame
+    };
+    let layer = Wanted::NONE.with([Layer::Thick]);
+    let exact = render("radius=8", layer);
+    assert!(render("radius=8", Wanted::NONE).color == exact.color);
+    let taken = render("radius=8,thickness=50", layer);
+    assert!(render("radius=8,thickness=50", Wanted::NONE).color == taken.color);
+    // The layer is as thick as it is, whatever is taken for it.
+    assert!(taken.plane(THICK) == exact.plane(THICK));
+    assert!(taken.color != exact.color);
 }
 
 #[test]

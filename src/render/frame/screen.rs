@@ -7,7 +7,7 @@ use crate::render::passes::{
     Run, Surroundings, Thickness, screen_occlusion, smooth_occlusion, thickness,
 };
 use crate::render::resources::{Screen, Sections, Spans};
-use crate::scene::ScreenOcclusion;
+use crate::scene::{DistanceMm, ScreenOcclusion};
 
 use super::planes::{Planes, ScreenPlanes};
 use super::view::View;
@@ -48,12 +48,10 @@ impl ScreenPasses {
         })
     }
 
-    /// How thick what is hit is taken to be; `exact`: as it is.
-    pub fn thickness<'a>(&self, exact: Thickness<'a>) -> Thickness<'a> {
-        match self.asked.thickness {
-            Some(mm) => Thickness::Constant(mm.get() as f32),
-            None => exact,
-        }
+    /// How thick what is hit is taken to be; `None`: as thick as it is.
+    pub fn thickness(&self) -> Option<Thickness<'static>> {
+        let constant = |mm: DistanceMm| Thickness::Constant(mm.get() as f32);
+        self.asked.thickness.map(constant)
     }
 
     /// Fills the occlusion of the whole picture.
@@ -87,11 +85,17 @@ impl ScreenPasses {
     }
 }
 
-/// Fills the spans where the picture's occlusion is estimated from them, and the layer where there is one.
+/// Fills the layer where there is one, and the spans where the picture's occlusion is estimated from them: by how thick what is
+/// hit is taken to be, or without that as thick as it is.
 ///
 /// # Errors
 /// As [`Run::cast`].
-pub fn find_thickness(run: &mut Run, how: Thickness, planes: &mut Planes) -> Result<()> {
+pub fn find_thickness(
+    run: &mut Run,
+    exact: Thickness,
+    taken: Option<Thickness>,
+    planes: &mut Planes,
+) -> Result<()> {
     let Planes {
         hit_mm: Some(hit_mm),
         screen,
@@ -101,9 +105,13 @@ pub fn find_thickness(run: &mut Run, how: Thickness, planes: &mut Planes) -> Res
     else {
         return Ok(());
     };
-    let spans = screen.as_mut().map(|screen| &mut screen.spans);
-    if spans.is_none() && !layers.has(Layer::Thick) {
+    let has_layer = layers.has(Layer::Thick);
+    let mut spans = screen.as_mut().map(|screen| &mut screen.spans);
+    if let (Some(taken), Some(spans)) = (taken, spans.take_if(|_| taken.is_some())) {
+        thickness(run, taken, hit_mm, Some(spans), false, layers)?;
+    }
+    if spans.is_none() && !has_layer {
         return Ok(());
     }
-    thickness(run, how, hit_mm, spans, layers)
+    thickness(run, exact, hit_mm, spans, has_layer, layers)
 }

@@ -158,7 +158,7 @@ impl Schedule for SurfacePasses<'_> {
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
         self.find_hits(run, planes)?;
-        find_thickness(run, self.thickness(), planes)?;
+        self.find_thickness(run, planes)?;
         self.show(run, planes)
     }
 
@@ -242,7 +242,7 @@ impl Schedule for SurfacePasses<'_> {
         {
             interpolate_hits(run, self.cast.iso, marks, hit_mm, layers)?;
         }
-        find_thickness(run, self.thickness(), planes)?;
+        self.find_thickness(run, planes)?;
         self.show(run, planes)
     }
 
@@ -299,17 +299,16 @@ impl SurfacePasses<'_> {
         }
     }
 
-    /// How thick what is hit is.
-    fn thickness(&self) -> Thickness<'_> {
+    /// Finds how far rays go on behind their hits, where that is needed.
+    fn find_thickness(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
         let exact = Thickness::Exact {
             inputs: self.view.inputs,
             cast: &self.cast,
-            start_mm: (START_VOXELS * self.view.volume.geometry().smallest_spacing_mm()) as f32,
+            start_mm: (START_VOXELS * spacing_mm) as f32,
         };
-        match self.screen() {
-            Some(screen) if !self.view.wanted.has(Layer::Thick) => screen.thickness(exact),
-            _ => exact,
-        }
+        let taken = self.screen().and_then(ScreenPasses::thickness);
+        find_thickness(run, exact, taken, planes)
     }
 
     fn find_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {

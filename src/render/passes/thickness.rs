@@ -25,12 +25,14 @@ pub enum Thickness<'a> {
     Constant(f32),
 }
 
-/// How far each ray goes on behind its hit: the layer, where there is one, and the spans of depths. Reads the kind.
+/// How far each ray goes on behind its hit: the layer, where it `has_layer`, and the spans of depths, where they are given. Reads
+/// the kind.
 pub fn thickness(
     run: &mut Run,
     thickness: Thickness,
     hit_mm: &Buffer<f32>,
     spans: Option<&mut Spans>,
+    has_layer: bool,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
     let is_exact = matches!(thickness, Thickness::Exact { .. });
@@ -39,7 +41,7 @@ pub fn thickness(
         .with("CERTIFICATE", 0)
         .with("MARCHED", u32::from(is_exact))
         .with("SPANS", u32::from(spans.is_some()))
-        .with("LAYERS", u32::from(layers.has(Layer::Thick)));
+        .with("LAYERS", u32::from(has_layer));
     let args = match &thickness {
         Thickness::Exact {
             inputs,
@@ -60,6 +62,7 @@ pub fn thickness(
             .write("spans", &mut spans.depths),
         None => args,
     };
-    let args = args.with(layers.writing(&[Layer::Thick]));
+    let layer: &[Layer] = if has_layer { &[Layer::Thick] } else { &[] };
+    let args = args.with(layers.writing(layer));
     run.cast("thickness", defines, args)
 }

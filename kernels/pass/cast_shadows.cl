@@ -31,7 +31,7 @@ kernel void cast_shadows(VOXELS voxels, SKIP_BY_CLASS, CLIP_PLANES, VolumeGrid v
         Ray ray = RAY_OF(pixels);
         Floats4 outward = read_float4(normal, pixels);
         Floats mm = read_floats(hit_mm, pixels);
-        SurfacePoint point = surface_point(voxels, volume, ray, mm, cast.iso, hit);
+        SurfacePoint point = surface_point(voxels, volume, ray, mm, cast.iso, SETTLING_STEPS, hit);
         point.normal.x = cap ? outward.x : point.normal.x;
         point.normal.y = cap ? outward.y : point.normal.y;
         point.normal.z = cap ? outward.z : point.normal.z;

@@ -11,7 +11,7 @@
 // The distance of neighbouring rays below a share of which hits are the same.
 #define SAME_PX 0.1f
 
-kernel void occlusion_between(RayGrid rays, const global uint *listed, uint first, uint count, uint per_side, float4 right, float4 down,
+kernel void occlusion_between(RayGrid rays, const global uint2 *listed, uint first, uint count, uint per_side, float4 right, float4 down,
                               float2 px, const global float2 *spans, const global float *occlusion, const global float *sample_hit_mm,
                               const global uint *sample_kind, global float *sample_occlusion)
 {
@@ -22,7 +22,7 @@ kernel void occlusion_between(RayGrid rays, const global uint *listed, uint firs
     float sum = 0.0f;
     float weights = 0.0f;
     if (sample_kind[n] == KIND_SURFACE) {
-        uint pixel = listed[first + n / per_pixel];
+        uint pixel = listed[first + n / per_pixel].x;
         int i = (int)(pixel % rays.width);
         int j = (int)(pixel / rays.width);
         float x = ((float)(n % per_side) + 0.5f) / (float)per_side - 0.5f;

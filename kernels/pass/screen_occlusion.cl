@@ -109,8 +109,8 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
 {
     Pixels pixels = tile_pixels(rays);
     Mask hit = pixels.inside & read_ints(kind, pixels) == KIND_SURFACE;
+    Floats occluded = FLOATS(0.0f); // of caps and where nothing is hit too
     if (ANY(hit)) {
-        Floats occluded = FLOATS(0.0f);
         Ray ray = camera_ray(rays, pixels);
         SurfacePoint point = surface_point(voxels, volume, ray, read_floats(hit_mm, pixels), iso, 1u, hit);
         ScreenAxes axes = {right, down, forward};
@@ -140,6 +140,6 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
                 occluded += hidden_share(section, hidden, sectors);
         }
         occluded = min_of(occluded / (float)sections, FLOATS(1.0f));
-        SCATTER(hit, estimate, pixels.index, occluded);
     }
+    SCATTER(pixels.inside, estimate, pixels.index, occluded);
 }

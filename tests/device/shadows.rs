@@ -351,9 +351,9 @@ fn vessels_have_the_references_shadows() {
     }
 }
 
-/// A grid's shares are those of feelers but for what it takes for smooth, the finer it is the less.
+/// A grid's shares are those of feelers but for what it takes for smooth.
 #[test]
-fn a_finer_grid_in_the_light_is_less_wrong() {
+fn a_grid_in_the_light_is_hardly_wrong() {
     let Some(device) = common::device() else {
         return;
     };
@@ -366,13 +366,14 @@ fn a_finer_grid_in_the_light_is_less_wrong() {
     let mut frames = on_device(&device, &volume, &scenes);
     let exact = frames.pop().unwrap();
     let errors: Vec<[f64; 2]> = frames.iter().map(|frame| apart(&exact, frame)).collect();
-    assert!(errors[2][0] < 2e-3 && errors[2][1] < 1e-3, "{errors:?}");
-    assert!(errors[2][0] < errors[0][0], "{errors:?}");
-    // The control: a grid that nobody asks is as good as the feelers; this one is asked.
     assert!(
-        errors.iter().all(|[visibility, _]| *visibility > 0.0),
+        errors
+            .iter()
+            .all(|[light, color]| *light < 2e-3 && *color < 1e-3),
         "{errors:?}"
     );
+    // The control: the finest is asked; where coarse ones see different things there are feelers.
+    assert!(errors[2][0] > 0.0, "{errors:?}");
 }
 
 #[test]

@@ -15,10 +15,11 @@
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space), per octree node
 // its CLASS_*, and a bit per cell in which something absorbs. Writes color, premultiplied linear light;
-// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal: means along the
+// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal, with VISIBILITY what reaches it of the first light: means along the
 // ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0 (they have no
 // part in the bound); with COUNTERS the samples of the medium and the nodes tested.
 #include "lib/light/emission.clh"
+#include "lib/skip/cell_path.clh"
 #include "lib/skip/march.clh"
 
 // The narrowest panel's share of its piece: it counts whatever the estimate.
@@ -36,16 +37,26 @@
 // third where the field is taken for linear.
 #define FINER 0.33f
 
-// The path of rays through the cells in which they stand.
+#if SHADED && SHADOWS != SHADOWS_NONE
+// The shares of lights that reach the ends of a path through a cell; between them they are interpolated: lights dim little in
+// a cell, and a feeler costs more than all else at a point.
 typedef struct {
-    Floats3 near, through; // index space: where the ray enters the cell, and from there to where it leaves
-    Cubic phi;             // along the path
-    Floats enters_mm, length_mm; // from the ray's entry
-} CellPath;
+    Floats near[MAX_LIGHTS], far[MAX_LIGHTS];
+    Floats far_t; // where the path ends
+} LightsAlong;
+#define LIGHTS_ALONG const LightsAlong *lights;
+#define LIGHTS_PARAMETER , LightsAlong *lights
+#define LIGHTS_GIVEN , &lights
+#else
+#define LIGHTS_ALONG
+#define LIGHTS_PARAMETER
+#define LIGHTS_GIVEN
+#endif
 
-// A monotone piece of such a path.
+// A monotone piece of a path through cells.
 typedef struct {
     CellPath cell;
+    LIGHTS_ALONG
     Floats from, width;     // shares of the path
     Floats t_mm, length_mm; // where it begins, from the ray's entry
 } Piece;
@@ -57,6 +68,34 @@ typedef struct {
     Medium medium;
 } Point;
 
+#if SHADED && SHADOWS != SHADOWS_NONE
+// Follows feelers from the ends of the paths of `which`, of which the near one may be where the path before ended.
+static inline void feel_along(VOXELS voxels, const Emitter *emitter, const CellPath *path, LightsAlong *lights, Mask which)
+{
+    Mask known = path->enters == lights->far_t;
+    for (uint n = 0u; n < MAX_LIGHTS; n++)
+        lights->near[n] = lights->far[n];
+    if (ANY(which & !known)) {
+        Floats begins[MAX_LIGHTS];
+        Floats3 near = clamp_to_domain(emitter->volume, path->near);
+        lights_reaching(voxels, &emitter->feelers, emitter->shading, near, emitter->toward_eye, which & !known, begins);
+        for (uint n = 0u; n < MAX_LIGHTS; n++)
+            lights->near[n] = known ? lights->near[n] : begins[n];
+    }
+    Floats3 far = {path->near.x + path->through.x, path->near.y + path->through.y, path->near.z + path->through.z};
+    far = clamp_to_domain(emitter->volume, far);
+    lights_reaching(voxels, &emitter->feelers, emitter->shading, far, emitter->toward_eye, which, lights->far);
+    lights->far_t = which ? path->enters + path->length : lights->far_t;
+}
+
+// The shares of lights that reach the point s of a path, 0 to 1.
+static inline void lights_along(const LightsAlong *lights, Floats s, Floats *visible)
+{
+    for (uint n = 0u; n < MAX_LIGHTS; n++)
+        visible[n] = lights->near[n] + s * (lights->far[n] - lights->near[n]);
+}
+#endif
+
 static inline Medium lit_at(VOXELS voxels, const Emitter *emitter, const Piece *piece, Floats u, Medium medium)
 {
 #if FILTER_LINEAR
@@ -65,7 +104,13 @@ static inline Medium lit_at(VOXELS voxels, const Emitter *emitter, const Piece *
     Floats s = FLOATS(0.5f); // a cell has one gradient; on its faces that of the next might be read
 #endif
     Floats3 p = {piece->cell.near.x + s * piece->cell.through.x, piece->cell.near.y + s * piece->cell.through.y, piece->cell.near.z + s * piece->cell.through.z};
-    return lit_at_point(voxels, emitter, clamp_to_domain(emitter->volume, p), medium);
+#if SHADED && SHADOWS != SHADOWS_NONE
+    Floats visible[MAX_LIGHTS];
+    lights_along(piece->lights, s, visible);
+#else
+    const Floats *visible = 0;
+#endif
+    return lit_at_point(voxels, emitter, clamp_to_domain(emitter->volume, p), medium, visible);
 }
 
 static inline Point point_at(VOXELS voxels, const Emitter *emitter, const Piece *piece, Floats u)
@@ -193,29 +238,9 @@ static inline void add_piece(VOXELS voxels, const Emitter *emitter, Accumulated 
     }
 }
 
-static inline CellPath cell_path(const CellWalk *walk, const Corners *corners, CellExit exit)
-{
-    TPair enters = entry_t(walk);
-    TPair leaves = exit_t(walk, exit);
-    Floats3 near = point_in_cell(walk, enters, walk->axis, NO_LANE);
-    Floats3 far = point_in_cell(walk, leaves, exit_axis(walk, exit), ALL_LANES);
-    const float corner = FILTER_LINEAR ? 0.0f : 0.5f; // with the nearest filter cells are the voxels' own boxes
-    CellPath path;
-    path.enters_mm = enters.high;
-    path.length_mm = (leaves.high - enters.high) + (leaves.low - enters.low);
-    path.through.x = far.x - near.x;
-    path.through.y = far.y - near.y;
-    path.through.z = far.z - near.z;
-    path.phi = cubic_along(corners, near, path.through);
-    path.near.x = AS_FLOATS(walk->cell.x) + near.x - corner;
-    path.near.y = AS_FLOATS(walk->cell.y) + near.y - corner;
-    path.near.z = AS_FLOATS(walk->cell.z) + near.z - corner;
-    return path;
-}
-
 // Adds the light of cells, in the lanes of `which`: one monotone piece after the other.
-static inline void add_cell(VOXELS voxels, const Emitter *emitter, Accumulated *accumulated, CellPath path, Floats share_per_mm, Mask which,
-                            Ints *samples)
+static inline void add_cell(VOXELS voxels, const Emitter *emitter, Accumulated *accumulated, CellPath path LIGHTS_PARAMETER, Floats share_per_mm,
+                            Mask which, Ints *samples)
 {
     Floats ends[4];
     ends[0] = FLOATS(0.0f);
@@ -223,12 +248,16 @@ static inline void add_cell(VOXELS voxels, const Emitter *emitter, Accumulated *
     ends[3] = FLOATS(1.0f);
     Piece piece;
     piece.cell = path;
-    which = which & path.length_mm > 0.0f;
+    which = which & path.length > 0.0f;
+#if SHADED && SHADOWS != SHADOWS_NONE
+    feel_along(voxels, emitter, &path, lights, which);
+    piece.lights = lights;
+#endif
     for (uint n = 1u; n < 4u; n++) {
         piece.from = ends[n - 1u];
         piece.width = ends[n] - ends[n - 1u];
-        piece.t_mm = path.enters_mm + piece.from * path.length_mm;
-        piece.length_mm = piece.width * path.length_mm;
+        piece.t_mm = path.enters + piece.from * path.length;
+        piece.length_mm = piece.width * path.length;
         add_piece(voxels, emitter, accumulated, &piece, share_per_mm, which & piece.width > 0.0f, samples);
     }
 }
@@ -238,6 +267,12 @@ static inline void emit_along(VOXELS voxels, const Emitter *emitter, Accumulated
 {
     EmissionCast cast = emitter->cast;
     Corners corners = no_corners();
+#if SHADED && SHADOWS != SHADOWS_NONE
+    LightsAlong lights;
+    lights.far_t = FLOATS(-1.0f);
+    for (uint n = 0u; n < MAX_LIGHTS; n++)
+        lights.near[n] = lights.far[n] = FLOATS(1.0f);
+#endif
     while (ANY(march->alive)) {
         for (Mask seeking = cells_seeking(march); ANY(seeking); seeking = cells_seeking(march)) {
             Skip skip = cells_by_class(march, voxels, 0.0f, seeking);
@@ -259,13 +294,13 @@ static inline void emit_along(VOXELS voxels, const Emitter *emitter, Accumulated
         if (ANY(absorbing)) {
             CellExit exit = cell_exit(&march->walk, absorbing);
             CellPath path = cell_path(&march->walk, &corners, exit);
-            add_cell(voxels, emitter, accumulated, path, share_per_mm, absorbing, samples);
+            add_cell(voxels, emitter, accumulated, path LIGHTS_GIVEN, share_per_mm, absorbing, samples);
             cells_advance(march, exit, absorbing, absorbing & accumulated->transmittance >= cast.min_transmittance);
         }
     }
 }
 
-kernel void adaptive_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS TRANSFER_SUMS, CLIP_PLANES, EMITTER_DIRECTIONS
+kernel void adaptive_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS TRANSFER_SUMS, CLIP_PLANES, FEELER_GRIDS EMITTER_DIRECTIONS
                               VolumeGrid volume, RAY_SOURCE, EmissionCast cast, Shading shading, EMISSION_PLANES COUNTER_PLANES)
 {
     Pixels pixels = RAY_PIXELS();
@@ -276,7 +311,7 @@ kernel void adaptive_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS TRANS
     if (ANY(visible.meets)) {
         CellMarch march = cell_march(volume, skip_by_class(node_class, levels, cells), &visible, cast.traverse, true);
         Emitter emitter = {{knot_values, knot_colors, cast.knots}, TRANSFER_SUMS_GIVEN, cast, volume, &shading,
-                           direction_to_eye(visible.ray) EMITTER_DIRECTIONS_GIVEN};
+                           direction_to_eye(visible.ray) EMITTER_FEELERS(TRANSFER_SUMS_GIVEN) EMITTER_DIRECTIONS_GIVEN};
         Floats share_per_mm = 0.5f * cast.bound / max_of(visible.interval.exit - visible.interval.enter, FLOATS(FLT_MIN));
         emit_along(voxels, &emitter, &accumulated, &march, share_per_mm, &samples);
         nodes_tested = march.nodes_tested;

@@ -11,8 +11,8 @@
 // Reads the voxels, the transfer function's knots (values in stored units; colours linear light
 // with opacity in w; sums as mean_medium has them), the clip planes (index space) and, per octree
 // node, its CLASS_*; with HOMOGENEOUS what stands for each leaf. Writes color, premultiplied linear light;
-// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal: means along the
-// ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0; with COUNTERS
+// with LAYERS depth (mm from the eye) and value (stored units), with NORMALS the normal, with VISIBILITY what reaches it of the
+// first light: means along the ray, weighted as its light is, where the opacity is layers_from at least, else +inf and 0; with COUNTERS
 // the samples taken and the nodes tested.
 #include "lib/light/emission.clh"
 #include "lib/ray/jitter.clh"
@@ -37,7 +37,15 @@ static inline Floats phi_at(VOXELS voxels, const PanelContext *context, Floats t
 
 static inline Medium lit_at(VOXELS voxels, const PanelContext *context, Floats t, Medium medium)
 {
-    return lit_at_point(voxels, &context->emitter, lattice_point(&context->lattice, t), medium);
+    Floats3 p = lattice_point(&context->lattice, t);
+#if SHADED && SHADOWS != SHADOWS_NONE
+    const Emitter *emitter = &context->emitter;
+    Floats visible[MAX_LIGHTS];
+    lights_reaching(voxels, &emitter->feelers, emitter->shading, p, emitter->toward_eye, medium.absorption > 0.0f, visible);
+#else
+    const Floats *visible = 0;
+#endif
+    return lit_at_point(voxels, &context->emitter, p, medium, visible);
 }
 
 #if !INTEGRATES
@@ -197,7 +205,7 @@ static inline void emit_along(VOXELS voxels, const PanelContext *context, Accumu
     }
 }
 
-#if INTEGRATES
+#if INTEGRATES || SHADOWS == SHADOWS_EXACT || SHADOWS == SHADOWS_CACHED
 #define SUMS TRANSFER_SUMS
 #define SUMS_GIVEN TRANSFER_SUMS_GIVEN
 #else
@@ -205,7 +213,7 @@ static inline void emit_along(VOXELS voxels, const PanelContext *context, Accumu
 #define SUMS_GIVEN NO_TRANSFER_SUMS
 #endif
 
-kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NODE_AVERAGE CLIP_PLANES, EMITTER_DIRECTIONS
+kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NODE_AVERAGE CLIP_PLANES, FEELER_GRIDS EMITTER_DIRECTIONS
                           VolumeGrid volume, RAY_SOURCE, EmissionCast cast JITTER, Shading shading, EMISSION_PLANES COUNTER_PLANES)
 {
     Pixels pixels = RAY_PIXELS();
@@ -218,7 +226,7 @@ kernel void cast_emission(VOXELS voxels, SKIP_BY_CLASS, TRANSFER_KNOTS SUMS, NOD
         Steps spacing = STEPS(cast.step_mm, pixels);
         SegmentMarch march = segment_march(volume, grid, &visible, cast.traverse, spacing, 1, !HOMOGENEOUS);
         Emitter emitter = {{knot_values, knot_colors, cast.knots}, SUMS_GIVEN, cast, volume, &shading,
-                           direction_to_eye(visible.ray) EMITTER_DIRECTIONS_GIVEN};
+                           direction_to_eye(visible.ray) EMITTER_FEELERS(SUMS_GIVEN) EMITTER_DIRECTIONS_GIVEN};
         PanelContext context;
         context.emitter = emitter;
         context.lattice = march.lattice;

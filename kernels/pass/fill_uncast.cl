@@ -3,11 +3,11 @@
 // the second those whose marks say that they belong to a block of their own (marks.clh).
 //
 // An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value,
-// occlusion and normal are means of the corners that did. Where there is no kind, what a corner met shows in its depth, and
-// what a pixel meets in its opacity.
+// occlusion, visibility, thickness, span and normal are means of the corners that did. Where there is no kind, what a corner met
+// shows in its depth, and what a pixel meets in its opacity.
 //
 // Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE,
-// OCCLUSION, NORMAL, COUNTERS, CERTIFICATE).
+// OCCLUSION, VISIBILITY, THICK, NORMAL, COUNTERS, CERTIFICATE) and spans.
 #include "lib/ray/blocks.clh"
 #include "lib/ray/planes.clh"
 
@@ -36,6 +36,21 @@
 #else
 #define OCCLUSION_PLANE
 #endif
+#if WITH_VISIBILITY
+#define VISIBILITY_PLANE , global float *visibility
+#else
+#define VISIBILITY_PLANE
+#endif
+#if WITH_THICK
+#define THICK_PLANE , global float *thick
+#else
+#define THICK_PLANE
+#endif
+#if WITH_SPANS
+#define SPAN_PLANE , global float2 *spans
+#else
+#define SPAN_PLANE
+#endif
 #if WITH_NORMAL
 #define NORMAL_PLANE , global float4 *normal
 #else
@@ -53,7 +68,7 @@
 #endif
 
 kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const global uint *cast COLOR_PLANE KIND_PLANE DEPTH_PLANE
-                        VALUE_PLANE OCCLUSION_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
+                        VALUE_PLANE OCCLUSION_PLANE VISIBILITY_PLANE THICK_PLANE SPAN_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
@@ -133,6 +148,29 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     kept = meets ? mean_of(occlusion, corners.place, weight) : kept;
 #endif
     SCATTER(pixels.inside, occlusion, pixels.index, kept);
+#endif
+#if WITH_VISIBILITY
+    Floats reached = FLOATS(0.0f);
+#if FILLING != FILLING_EMPTY
+    reached = meets ? mean_of(visibility, corners.place, weight) : reached;
+#endif
+    SCATTER(pixels.inside, visibility, pixels.index, reached);
+#endif
+#if WITH_THICK
+    Floats mm = FLOATS(0.0f);
+#if FILLING != FILLING_EMPTY
+    mm = meets ? mean_of(thick, corners.place, weight) : mm;
+#endif
+    SCATTER(pixels.inside, thick, pixels.index, mm);
+#endif
+#if WITH_SPANS
+    Floats2 span = {FLOATS(0.0f), FLOATS(-1.0f)};
+#if FILLING != FILLING_EMPTY
+    Floats2 mean_span = mean_of_spans(spans, corners.place, weight);
+    span.x = meets ? mean_span.x : span.x;
+    span.y = meets ? mean_span.y : span.y;
+#endif
+    scatter_float2(spans, pixels, span);
 #endif
 #if WITH_NORMAL
     Floats4 n = {FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f), FLOATS(0.0f)};

@@ -1,7 +1,7 @@
 // The colour of each hit surface: linear light, premultiplied, opaque where something was hit.
 //
 // Reads kind of a surface's cast and, with SHADED, its hit_mm and normal of surface_normal; with OCCLUSION too, the occlusion of
-// light from everywhere, which shows by `strength`. Writes color.
+// light from everywhere, which shows by `strength`, with VISIBILITY what reaches the hits of each light. Writes color.
 #include "lib/ray/planes.clh"
 #include "lib/ray/source.clh"
 #include "lib/light/shade.clh"
@@ -19,7 +19,13 @@
 #define OCCLUSION_PLANE
 #endif
 
-kernel void shade_surface(RAY_SOURCE, Shading shading, HITS const global uint *kind NORMAL_PLANE OCCLUSION_PLANE, global float4 *color)
+#if SHADED && VISIBILITY
+#define LIGHTS_PLANE , const global float4 *lights_reached
+#else
+#define LIGHTS_PLANE
+#endif
+
+kernel void shade_surface(RAY_SOURCE, Shading shading, HITS const global uint *kind NORMAL_PLANE OCCLUSION_PLANE LIGHTS_PLANE, global float4 *color)
 {
     Pixels pixels = RAY_PIXELS();
     Mask hit = read_ints(kind, pixels) != KIND_NOTHING;
@@ -36,7 +42,13 @@ kernel void shade_surface(RAY_SOURCE, Shading shading, HITS const global uint *k
 #if OCCLUSION
         reached -= strength * read_floats(occlusion, pixels);
 #endif
-        rgb = reflect_lights(&shading, rgb, point, reached);
+#if VISIBILITY
+        Floats4 lights = read_float4(lights_reached, pixels);
+        Floats visible[MAX_LIGHTS] = {lights.x, lights.y, lights.z, lights.w};
+        rgb = reflect_lights(&shading, rgb, point, reached, visible);
+#else
+        rgb = reflect_lights(&shading, rgb, point, reached, 0);
+#endif
 #endif
         seen.x = hit ? rgb.x : seen.x;
         seen.y = hit ? rgb.y : seen.y;

@@ -82,7 +82,23 @@ kernel void abi(global uint *layout)
         layout[n++] = OFFSET(EmissionCast, absorbs_from);
         layout[n++] = OFFSET(EmissionCast, absorbs_to);
         layout[n++] = OFFSET(EmissionCast, layers_from);
-        layout[n++] = OFFSET(EmissionCast, pad);
+        layout[n++] = OFFSET(EmissionCast, mm_per_t);
+        layout[n++] = OFFSET(EmissionCast, shadow_step_mm);
+        layout[n++] = OFFSET(EmissionCast, pad_0);
+        layout[n++] = OFFSET(EmissionCast, pad_1);
+        layout[n++] = OFFSET(EmissionCast, pad_2);
+    }
+    {
+        LightGrid value;
+        layout[n++] = sizeof(value);
+        layout[n++] = OFFSET(LightGrid, x);
+        layout[n++] = OFFSET(LightGrid, y);
+        layout[n++] = OFFSET(LightGrid, over);
+        layout[n++] = OFFSET(LightGrid, depth);
+        layout[n++] = OFFSET(LightGrid, side);
+        layout[n++] = OFFSET(LightGrid, first);
+        layout[n++] = OFFSET(LightGrid, spacing_mm);
+        layout[n++] = OFFSET(LightGrid, pad);
     }
     {
         LightSource value;

@@ -36,6 +36,6 @@ kernel void reflection(uint count, uint model, float4 numbers, float4 first, flo
     LitPoint point = {{0.0f, 0.0f, 0.0f},
                       {normals[i].x, normals[i].y, normals[i].z},
                       {toward_eye[i].x, toward_eye[i].y, toward_eye[i].z}};
-    Floats3 light = reflect_lights(&shading, color, point, FLOATS(1.0f));
+    Floats3 light = reflect_lights(&shading, color, point, FLOATS(1.0f), 0);
     seen[i] = (float4)(light.x, light.y, light.z, 0.0f);
 }

@@ -34,6 +34,8 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "diffuse-color", "tint of that light"),
     ("", "specular-color", "tint of that light"),
     ("", "gradient-smooth", "sigma of the smoothing before them"),
+    ("", "light-size", "The angle that each light fills"),
+    ("", "ssao", "Ambient occlusion estimated from the picture"),
     ("", "clip-plane", "Keep what lies on this side of a plane; up to 64 times"),
     ("", "sampling", "exact, solving every cell, or at fixed steps"),
     ("", "probe", "search for peaks between samples"),

@@ -33,7 +33,10 @@ use super::tolerance::choose;
   angioray render head.nrrd -o lit.png --light camera:-1,1,1@ivory --light point:40,-90,60@0.5
   angioray render head.nrrd -o fog.png --mode dvr --shading phong --shade-from 5%
   angioray render head.nrrd -o soft.png --ao rays=16,distance=5
-  angioray render head.nrrd -o near.png --dof focus=percentile:20,aperture=2 --dof-method lens:16
+  angioray render head.nrrd -o shadow.png --shadows on --light-size 5 --light camera:-1,1,1
+  angioray render head.nrrd -o near.png --dof focus=percentile:20,aperture=2
+  angioray render head.nrrd -o near.png --dof focus=auto,aperture=2,darken=0.5 --dof-method lens:16
+  angioray render head.nrrd -o soft.png --ssao radius=5
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --aa 4:adaptive
   angioray render head.nrrd -o head.png --mode dvr --step 2 --jitter interleaved:4 --check-sampling

@@ -102,6 +102,12 @@ layers! {
     Coverage, COVERAGE: f32 = Some(FillValue::Scalar(0.0)), "coverage", ["coverage.V"];
     /// The share of the light from everywhere that a surface keeps from the hit; 0 where nothing is hit or none is asked for.
     Occlusion, OCCLUSION: f32 = Some(FillValue::Scalar(0.0)), "occlusion", ["occlusion.V"];
+    /// The share of the first light that reaches the hit; of a medium the mean along the ray, weighted as its light is.
+    /// 0 where nothing is hit or no shadows are asked for.
+    Visibility, VISIBILITY: f32 = Some(FillValue::Scalar(0.0)), "visibility", ["visibility.V"];
+    /// How far the ray goes on behind the hit to its next crossing of the surface, or to the end of what is seen of it, mm; 0
+    /// where nothing is hit.
+    Thick, THICK: f32 = Some(FillValue::Scalar(0.0)), "thick", ["thick.V"];
     /// The diameter of the circle of confusion, pixels, above 0 behind the focal plane; where nothing is seen that of what is
     /// infinitely far away. 0 without a lens.
     Coc, COC: f32 = Some(FillValue::Scalar(0.0)), "coc", ["coc.V"];

@@ -37,6 +37,9 @@ impl SceneOptions {
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
         }
         self.sampling.sparse_in(self.mode())?;
+        if let Some(shadows) = self.effects.cast_shadows() {
+            shadows.check(self.mode())?;
+        }
         let voxels = self.sampling.voxels.unwrap_or_default();
         voxels.check(self.method(), self.sampling.filter.unwrap_or_default())?;
         if let Some(choice) = self.picture.tf.take() {
@@ -83,6 +86,7 @@ impl SceneOptions {
             Need::Homogeneity => self.picture.homogeneity.is_some(),
             Need::Sparse => self.sampling.is_sparse(),
             Need::Lens => self.effects.dof.is_some(),
+            Need::Shadows => self.effects.shadows.is_some(),
             // Of options beside the scene.
             Need::OpenCl
             | Need::Layered
@@ -130,6 +134,9 @@ impl SceneOptions {
             )),
             Need::Lens => Error::usage(format!(
                 "'{option}' has no effect without 'dof': a pinhole has no lens"
+            )),
+            Need::Shadows => Error::usage(format!(
+                "'{option}' has no effect without 'shadows': hard or soft, none are cast"
             )),
             _ => Error::usage(format!(
                 "'{option}' has no effect in mode '{mode}' without shading"

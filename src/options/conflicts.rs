@@ -97,6 +97,24 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "leave one of the two out",
     },
     Contradiction {
+        is_in: |all| all.effects.ssao.is_some() && all.sampling.filter == Some(Filter::Nearest),
+        sentence: "'ssao' cannot be combined with 'filter' nearest, whose surface is the voxels' faces",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
+        is_in: |all| {
+            let nearest = all.sampling.filter == Some(Filter::Nearest);
+            all.effects.shadows.is_some() && nearest && all.mode() == Mode::Iso
+        },
+        sentence: "'shadows' cannot be combined with 'filter' nearest, whose surface is the voxels' faces",
+        hint: "leave one of the two out",
+    },
+    Contradiction {
+        is_in: |all| all.effects.ao.is_some() && all.effects.ssao.is_some(),
+        sentence: "'ao' cannot be combined with 'ssao': both find how much of the light from everywhere is occluded",
+        hint: "leave one of the two out: 'ao' follows rays, 'ssao' looks at the picture",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -231,13 +249,33 @@ pub(super) const REPLACED: &[Replaced] = &[
     },
     Replaced {
         by: |flags, _| flags.sampling.filter == Some(Filter::Nearest),
-        options: &["ao"],
+        options: &["ao", "ssao"],
     },
     Replaced {
         by: |flags, file| {
-            flags.effects.ao.is_some() && file.sampling.filter == Some(Filter::Nearest)
+            flags.effects.occlusion().is_some() && file.sampling.filter == Some(Filter::Nearest)
         },
         options: &["filter"],
+    },
+    Replaced {
+        by: |flags, file| flags.sampling.filter == Some(Filter::Nearest) && is_surface(flags, file),
+        options: &["shadows", "light-size"],
+    },
+    Replaced {
+        by: |flags, file| {
+            let nearest = file.sampling.filter == Some(Filter::Nearest);
+            flags.effects.shadows.is_some() && nearest && is_surface(flags, file)
+        },
+        options: &["filter"],
+    },
+    // One way to find what is occluded replaces the other.
+    Replaced {
+        by: |flags, _| flags.effects.ao.is_some(),
+        options: &["ssao"],
+    },
+    Replaced {
+        by: |flags, _| flags.effects.ssao.is_some(),
+        options: &["ao"],
     },
     Replaced {
         by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),
@@ -365,6 +403,12 @@ pub(super) const REPLACED: &[Replaced] = &[
 /// Whether the flags name another mode than the file's.
 pub(super) fn is_other_mode(flags: &SceneOptions, file: &SceneOptions) -> bool {
     flags.picture.mode.is_some_and(|mode| mode != file.mode())
+}
+
+/// Whether flags over a file make a picture of a surface.
+fn is_surface(flags: &SceneOptions, file: &SceneOptions) -> bool {
+    let mode = flags.picture.mode.or(file.picture.mode);
+    mode.unwrap_or_default() == Mode::Iso
 }
 
 fn is_exact(options: &SceneOptions) -> bool {

@@ -2,9 +2,19 @@
 
 use super::group::group;
 use super::text_form::text_form;
-use crate::scene::{AmbientOcclusion, DepthOfField, DofMethod, Phong, Reflectance};
+use crate::scene::{
+    AmbientOcclusion, DepthOfField, DofMethod, LightSizeDeg, Occlusion, Phong, Reflectance,
+    ScreenOcclusion, ShadowMethod, Shadows,
+};
 
-text_form!(AmbientOcclusion, DepthOfField, DofMethod);
+text_form!(
+    AmbientOcclusion,
+    DepthOfField,
+    DofMethod,
+    LightSizeDeg,
+    ScreenOcclusion,
+    ShadowMethod
+);
 
 group! {
     /// What light and lens do beyond reflection at a point.
@@ -16,6 +26,26 @@ group! {
         /// strongly it shows [default of S: 1]
         #[arg(long, value_name = "rays=N,distance=MM,strength=S", allow_hyphen_values = true)]
         ao: AmbientOcclusion,
+
+        /// Shadows: lights but headlights are dimmed where the volume itself is in their way. on: by rays from
+        /// cell to cell toward each light; in dvr also step=K, by rays whose samples are K times the sample step
+        /// apart, and cached:N, from a grid of optical depths with N points along its longest side
+        #[arg(long, value_name = "on|step=K|cached:N")]
+        shadows: ShadowMethod,
+
+        /// The angle in degrees that each light fills, from 0 to 90: shadows of a surface get soft edges
+        #[arg(long, value_name = "DEG")]
+        light_size: LightSizeDeg,
+
+        /// Ambient occlusion within MM estimated from the picture alone: from N pixels around each, an even number
+        /// up to 1024 [default of N: 32]. What is seen is as thick as it is (layer thick), or MM with thickness=MM;
+        /// what lies behind it or outside the picture occludes nothing
+        #[arg(
+            long,
+            value_name = "radius=MM,samples=N,strength=S",
+            allow_hyphen_values = true
+        )]
+        ssao: ScreenOcclusion,
 
         /// Depth of field: a lens of this diameter in place of a pinhole, or cones of this half-angle of an
         /// orthographic camera (aperture=1deg), in focus at a distance in mm along the view axis, at the
@@ -29,8 +59,11 @@ group! {
         )]
         dof: DepthOfField,
 
-        /// How depth of field is made: lens:N casts the picture through N points of the lens, up to 1024
-        #[arg(long, value_name = "lens:N", allow_hyphen_values = true)]
+        /// How depth of field is made: gather blurs each surface over what lies behind it, with a second cast for
+        /// what first surfaces hide, and leaves what is in focus as it is; mix mixes the picture with a blurred
+        /// one by how far each pixel is out of focus (Lesar et al.); lens:N casts the picture through N points
+        /// of the lens, up to 1024
+        #[arg(long, value_name = "gather|mix|lens:N", allow_hyphen_values = true)]
         dof_method: DofMethod,
     }
 }
@@ -39,14 +72,33 @@ impl EffectOptions {
     /// Returns the options that make the same, where the way to make depth of field has its default.
     pub(super) fn resolve(self) -> Self {
         let dof_method = self.dof.map(|_| self.dof_method.unwrap_or_default());
-        Self { dof_method, ..self }
+        let light_size = self.shadows.map(|_| self.light_size.unwrap_or_default());
+        Self {
+            dof_method,
+            light_size,
+            ..self
+        }
+    }
+
+    /// Returns the shadows that are asked for.
+    pub(super) fn cast_shadows(&self) -> Option<Shadows> {
+        self.shadows.map(|method| Shadows {
+            method,
+            light_size: self.light_size.unwrap_or_default(),
+        })
+    }
+
+    /// Returns what dims the light from everywhere, and how it is found.
+    pub(super) fn occlusion(&self) -> Option<Occlusion> {
+        let of_screen = self.ssao.map(Occlusion::Screen);
+        self.ao.map(Occlusion::Rays).or(of_screen)
     }
 
     /// Returns how light is reflected where nothing else is given: where light from everywhere may be occluded there is more
     /// of it.
     pub(super) fn phong(&self) -> Phong {
         let default = Phong::default();
-        match self.ao {
+        match self.occlusion() {
             None => default,
             Some(_) => Phong {
                 ambient: Reflectance::OCCLUDED,

@@ -65,6 +65,7 @@ fn label(rule: &Rule) -> Option<String> {
         Need::Homogeneity => Some("with --homogeneity".to_owned()),
         Need::Sparse => Some("with --sparse".to_owned()),
         Need::Lens => Some("with --dof".to_owned()),
+        Need::Shadows => Some("with --shadows".to_owned()),
         _ => None,
     });
     let steps = rule
@@ -117,7 +118,7 @@ mod tests {
             (
                 "ambient",
                 "Light",
-                "shading: light [default: 0.1; 0.5 with --ao]",
+                "shading: light [default: 0.1; 0.5 with --ao or --ssao]",
             ),
             (
                 "shading",

@@ -8,7 +8,9 @@ use super::step_cost::cost_note;
 use super::threshold::Threshold;
 use crate::extent::Range;
 use crate::number_text::{concise, concise_within};
-use crate::scene::{ClipPlane, Mode, Picture, SamplingMethod, Scene, TransferFile};
+use crate::scene::{
+    ClipPlane, Light, LightPlace, Mode, Picture, SamplingMethod, Scene, TransferFile,
+};
 use crate::subject::{Sphere, Subject};
 
 impl SceneOptions {
@@ -21,6 +23,7 @@ impl SceneOptions {
         notes.extend(replaced(&self.picture, &complete.picture, subject.range));
         notes.extend(no_surface_note(&scene.picture, subject.range));
         notes.extend(self.robust_range_note(subject));
+        notes.extend(headlight_note(scene));
         notes.extend(clip_notes(&scene.clip_planes, subject));
         notes.extend(cost_note(scene, subject));
         if self.mode() == Mode::Dvr && self.picture.tf.is_none() {
@@ -80,6 +83,16 @@ impl SceneOptions {
             within(whole.max)
         ))
     }
+}
+
+/// The note that shadows are asked for of a light that casts none.
+fn headlight_note(scene: &Scene) -> Option<String> {
+    let is_headlight = |light: &Light| light.place == LightPlace::Headlight;
+    let idle = scene.shadows.is_some() && scene.lights.iter().any(is_headlight);
+    idle.then(|| {
+        "a headlight casts no shadow: --light puts a light elsewhere, such as camera:-1,1,1"
+            .to_owned()
+    })
 }
 
 /// Why a surface's iso value outside the volume's values shows no surface, and what it shows.

@@ -76,6 +76,9 @@ mod tests {
             ("recon = 'adaptive'", "filter = 'nearest'"),
             ("recon = 'adaptive'", "probe = 'on'"),
             ("ao = 'distance=5'", "filter = 'nearest'"),
+            ("ssao = 'radius=5'", "filter = 'nearest'"),
+            ("ssao = 'radius=5'", "ao = 'distance=5'"),
+            ("shadows = 'on'", "filter = 'nearest'"),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
             (

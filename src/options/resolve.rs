@@ -95,7 +95,8 @@ impl SceneOptions {
             anti_aliasing: of_sampling.aa.unwrap_or_default(),
             sparse,
             lights,
-            ambient_occlusion: effects.ao,
+            shadows: effects.cast_shadows(),
+            ambient_occlusion: effects.occlusion(),
             depth_of_field: effects.dof,
             gradient,
             tone,
@@ -224,6 +225,7 @@ mod tests {
                 Need::Precomputed(_) => text.push_str("gradient = 'precomputed'\n"),
                 Need::Eye => text.push_str("eye = [9, -40, 3]\n"),
                 Need::Homogeneity => text.push_str("homogeneity = 0.1\n"),
+                Need::Shadows => text.push_str("shadows = 'on'\n"),
                 Need::Lens => text.push_str("dof = 'focus=auto,aperture=1'\n"),
                 _ => {}
             }

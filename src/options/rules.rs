@@ -16,9 +16,9 @@ use crate::extent::ImageSize;
 use crate::octree::Leaf;
 use crate::scene::{
     AntiAliasing, Brightness, Contrast, DofMethod, Filter, FovDeg, Gamma, HomogeneityRule, Jitter,
-    Light, Mode, Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance, Sampling,
-    SamplingMethod, Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination, TransferFile,
-    View,
+    Light, LightSizeDeg, Mode, Picture, Quadrature, Reconstruction, Refill, Refine, Reflectance,
+    Sampling, SamplingMethod, Shininess, Sparse, SrgbColor, StepVoxels, Storage, Termination,
+    TransferFile, View,
 };
 
 /// The options among which a name is unique.
@@ -69,6 +69,8 @@ pub(crate) enum Need {
     Sparse,
     /// Depth of field.
     Lens,
+    /// Shadows.
+    Shadows,
     /// An OpenCL device: the reference has none.
     OpenCl,
     /// A picture file that holds layers.
@@ -241,6 +243,12 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| format!("{}, all of it", text::<ShadeFrom>())),
     scene("ao", What, &[OCCLUDES, Need::Shading])
         .default(|| "none".to_owned()),
+    scene("shadows", What, &[LIGHT, Need::Shading])
+        .default(|| "none".to_owned()),
+    scene("light-size", What, &[LIGHT, Need::Shading, Need::Shadows])
+        .default(text::<LightSizeDeg>),
+    scene("ssao", What, &[OCCLUDES, Need::Shading])
+        .default(|| "none".to_owned()),
     scene("dof", What, &[FOCUSES])
         .default(|| "none, a pinhole".to_owned()),
     scene("dof-method", How, &[FOCUSES, Need::Lens])
@@ -355,7 +363,7 @@ fn default_screen_error() -> String {
 
 /// The default of a reflectance that is another where ambient light is occluded.
 fn occluded(without: Reflectance) -> String {
-    format!("{without}; {} with --ao", Reflectance::OCCLUDED)
+    format!("{without}; {} with --ao or --ssao", Reflectance::OCCLUDED)
 }
 
 fn default_shading() -> String {

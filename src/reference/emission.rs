@@ -15,12 +15,15 @@ use super::collocation::{GAUSS, NODES};
 use super::cubic::Cubic;
 use super::field::{Field, bounds};
 use super::interval::Interval;
+use super::leaving::Surroundings;
 use super::medium::{Medium, Ramp};
-use super::shade::{Lighting, LitPoint, normal_from_gradient};
+use super::shade::{Lamp, Lighting, LitPoint, normal_from_gradient};
 
 /// The sum of the error estimates of a ray, per channel, but for [`FLOOR`] a piece. An estimate is
 /// that of the coarser of two results, of which the finer one is taken.
 const TOLERANCE: f64 = 1e-7;
+/// The same where light is followed to each point through the medium, since every point costs a ray of its own.
+const SHADOWED_TOLERANCE: f64 = 1e-5;
 /// The estimate at which a piece is accepted however short it is; a ray has fewer than 10⁵ pieces
 /// by far that need it.
 const FLOOR: f64 = 1e-12;
@@ -59,15 +62,31 @@ pub struct Means {
     pub normal_world: DVec3,
 }
 
+/// A ray in world space.
+#[derive(Debug, Clone, Copy)]
+pub struct Path {
+    /// Where the interval begins.
+    pub start_world: DVec3,
+    /// The ray's direction, a unit vector.
+    pub dir_world: DVec3,
+}
+
+impl Path {
+    /// The point so far from the interval's start.
+    fn at(&self, mm: f64) -> DVec3 {
+        self.start_world + self.dir_world * mm
+    }
+}
+
 /// How the medium's points along a ray are lit.
 #[derive(Debug, Clone, Copy)]
 pub struct Shading<'a> {
     /// The lights and the reflection.
     pub lighting: &'a Lighting,
-    /// Where the interval begins, world space.
-    pub start_world: DVec3,
-    /// The ray's direction, a unit vector in world space.
-    pub dir_world: DVec3,
+    /// The ray.
+    pub path: Path,
+    /// What the light passes that reaches a point; `None`: nothing is in its way.
+    pub shadows: Option<Surroundings<'a>>,
     /// The gradient, per mm, from which points are shaded fully; 0: all are.
     pub shaded_from: f64,
     /// How gradients are computed.
@@ -87,7 +106,7 @@ pub struct Normals {
     pub toward_eye: DVec3,
 }
 
-/// `∫ c κ T dt` and T over the interval, within 1e-6 per channel (for colours up to 1).
+/// `∫ c κ T dt` and T over the interval, within 1e-6 per channel (for colours up to 1), with shadows within 1e-4.
 pub fn integrate<T: Voxel>(
     field: &Field<T>,
     interval: &Interval,
@@ -96,14 +115,61 @@ pub fn integrate<T: Voxel>(
 ) -> Emitted {
     let brightest = shading.map_or(1.0, |s| s.lighting.brightest().max(1.0));
     let mut ray = Ray::new(medium, interval, brightest);
+    if shading.is_some_and(|shading| shading.shadows.is_some()) {
+        ray.tolerance_per_mm = SHADOWED_TOLERANCE / interval.length_mm;
+    }
     let walked = ray.along(field, interval, |segment| Tint {
-        lit: shading.map(|shading| Lit::new(field, segment, shading)),
+        lit: shading.map(|shading| Lit::new(field, medium, segment, shading)),
     });
     Emitted {
         color: ray.light,
         transmittance: ray.transmittance,
         walked,
     }
+}
+
+/// exp(−∫κ) over the interval, or below [`DARK`].
+pub fn transmittance<T: Voxel>(field: &Field<T>, interval: &Interval, medium: &Medium) -> f64 {
+    let mut ray = Ray::<0>::new(medium, interval, 1.0);
+    ray.along(field, interval, |_| Nothing);
+    ray.transmittance
+}
+
+/// The share of a light that reaches a point of the medium.
+pub fn visibility<T: Voxel>(
+    field: &Field<T>,
+    medium: &Medium,
+    shadows: &Surroundings,
+    at_world: DVec3,
+    to_viewer: DVec3,
+    light: LightFrom,
+) -> f64 {
+    match light {
+        LightFrom::Eye => 1.0,
+        LightFrom::Direction(_) | LightFrom::Point(_) => {
+            let interval = shadows.interval_to_light(at_world, to_viewer, light);
+            interval.map_or(1.0, |interval| transmittance(field, &interval, medium))
+        }
+    }
+}
+
+/// The mean of what reaches an interval's points of a light, weighted as their own light is.
+pub fn mean_visibility<T: Voxel>(
+    field: &Field<T>,
+    interval: &Interval,
+    medium: &Medium,
+    path: Path,
+    shadows: &Surroundings,
+    light: LightFrom,
+) -> f64 {
+    let mut ray = Ray::new(medium, interval, 1.0);
+    ray.tolerance_per_mm = SHADOWED_TOLERANCE / interval.length_mm;
+    ray.along(field, interval, |segment| Reached {
+        ends_world: [segment.from_mm, segment.to_mm].map(|mm| path.at(mm)),
+        of_point: |at_world| visibility(field, medium, shadows, at_world, -path.dir_world, light),
+    });
+    let [reached] = ray.light;
+    reached / (1.0 - ray.transmittance)
 }
 
 /// The means of an interval in which something absorbs, the normal if requested. Their integrals are as
@@ -142,6 +208,29 @@ trait Points<const N: usize> {
     /// Whether the numbers surely change little on a piece: a swing might lie between all nodes.
     fn is_steady(&self, _from: f64, _to: f64) -> bool {
         true
+    }
+}
+
+/// Nothing is summed but optical depth.
+struct Nothing;
+
+impl Points<0> for Nothing {
+    fn at(&self, _s: f64, _value: f64, _color: [f64; 3]) -> [f64; 0] {
+        []
+    }
+}
+
+/// What reaches the points of a segment of a light.
+struct Reached<F> {
+    ends_world: [DVec3; 2],
+    of_point: F,
+}
+
+impl<F: Fn(DVec3) -> f64> Points<1> for Reached<F> {
+    fn at(&self, s: f64, _value: f64, _color: [f64; 3]) -> [f64; 1] {
+        [(self.of_point)(
+            self.ends_world[0].lerp(self.ends_world[1], s),
+        )]
     }
 }
 
@@ -189,18 +278,27 @@ fn is_narrow(vectors: &[DVec3]) -> bool {
 }
 
 /// The light on a segment.
-struct Lit<'a> {
+struct Lit<'a, T> {
+    field: &'a Field<'a, T>,
+    medium: &'a Medium,
     shading: Shading<'a>,
     gradient: WorldGradient,
     /// Where the segment begins and ends, world space.
     ends_world: [DVec3; 2],
 }
 
-impl<'a> Lit<'a> {
-    fn new<T: Voxel>(field: &Field<T>, segment: &Segment, shading: &Shading<'a>) -> Self {
+impl<'a, T: Voxel> Lit<'a, T> {
+    fn new(
+        field: &'a Field<'a, T>,
+        medium: &'a Medium,
+        segment: &Segment,
+        shading: &Shading<'a>,
+    ) -> Self {
         let to_world = shading.gradient_world_from_index;
-        let place = |mm: f64| shading.start_world + shading.dir_world * mm;
+        let place = |mm: f64| shading.path.at(mm);
         Self {
+            field,
+            medium,
             shading: *shading,
             gradient: WorldGradient::new(field, segment, shading.gradient, to_world),
             ends_world: [place(segment.from_mm), place(segment.to_mm)],
@@ -213,13 +311,26 @@ impl<'a> Lit<'a> {
 
     /// The light of a point: the shaded colour, mixed with the unshaded where the gradient is small.
     fn reflect(&self, s: f64, color: [f64; 3]) -> [f64; 3] {
-        let to_viewer = -self.shading.dir_world;
+        let to_viewer = -self.shading.path.dir_world;
+        let at_world = self.at_world(s);
         let point = LitPoint {
-            at_world: self.at_world(s),
+            at_world,
             to_viewer,
             normal: self.gradient.normal(s, to_viewer),
         };
-        let shaded = self.shading.lighting.reflect(color, point, 1.0);
+        let reached = |lamp: &Lamp| {
+            self.shading.shadows.as_ref().map_or(1.0, |shadows| {
+                visibility(
+                    self.field,
+                    self.medium,
+                    shadows,
+                    at_world,
+                    to_viewer,
+                    lamp.from,
+                )
+            })
+        };
+        let shaded = self.shading.lighting.reflect(color, point, 1.0, reached);
         let share = self.shaded_share(s);
         std::array::from_fn(|c| shaded[c] * share + color[c] * (1.0 - share))
     }
@@ -236,7 +347,7 @@ impl<'a> Lit<'a> {
     fn facing(&self, from: LightFrom) -> Ordinates {
         let along = |toward: DVec3| Cubic::combine(&self.gradient.0, toward.to_array()).0;
         match from {
-            LightFrom::Eye => along(-self.shading.dir_world).as_slice().into(),
+            LightFrom::Eye => along(-self.shading.path.dir_world).as_slice().into(),
             LightFrom::Direction(toward) => along(toward).as_slice().into(),
             LightFrom::Point(light_world) => {
                 let [near, far] = self.ends_world.map(|end| (light_world - end).to_array());
@@ -258,11 +369,11 @@ impl<'a> Lit<'a> {
 }
 
 /// Colours, under lights where there are any.
-struct Tint<'a> {
-    lit: Option<Lit<'a>>,
+struct Tint<'a, T> {
+    lit: Option<Lit<'a, T>>,
 }
 
-impl Points<3> for Tint<'_> {
+impl<T: Voxel> Points<3> for Tint<'_, T> {
     fn at(&self, s: f64, _value: f64, color: [f64; 3]) -> [f64; 3] {
         match &self.lit {
             Some(lit) => lit.reflect(s, color),

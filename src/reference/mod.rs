@@ -15,6 +15,7 @@ mod emission;
 mod field;
 mod gradient;
 mod interval;
+mod leaving;
 mod medium;
 mod occlusion;
 mod projection;
@@ -33,7 +34,7 @@ use crate::error::Result;
 use crate::extent::ImageSize;
 use crate::frame::{
     CERTIFICATE, COC, COVERAGE, Certificate, DEPTH, Frame, KIND, Key, Kind, Layer, Layers, NORMAL,
-    OCCLUSION, PlaneEntry, STEPS, VALUE, Wanted,
+    OCCLUSION, PlaneEntry, STEPS, THICK, VALUE, VISIBILITY, Wanted,
 };
 use crate::progress::Progress;
 use crate::scene::{DepthOfField, LensPoint, Picture, RayCount, Scene};
@@ -258,6 +259,8 @@ fn fill(frame: &mut Frame, pixel: usize, seen: &PixelResult, scene: &Scene) {
     set(layers, KIND, pixel, result.kind as u32);
     set(layers, COVERAGE, pixel, seen.coverage as f32);
     set(layers, OCCLUSION, pixel, result.occlusion as f32);
+    set(layers, VISIBILITY, pixel, result.visibility as f32);
+    set(layers, THICK, pixel, result.thick_mm as f32);
     set(layers, COC, pixel, seen.circle_px as f32);
     set(
         layers,

@@ -1,14 +1,8 @@
-//! What a point of a surface sees of the space before it.
+//! What a point of a surface sees of the space before it, and of lights.
 
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-
-use crate::volume::Voxel;
-
-use super::cells::Walk;
-use super::field::{Field, bounds};
-use super::interval::Interval;
 
 /// Rays over a hemisphere.
 const RAYS: u32 = 1024;
@@ -34,18 +28,25 @@ pub fn open_share(normal: DVec3, mut is_open: impl FnMut(DVec3) -> bool) -> f64 
     f64::from(open) / f64::from(RAYS)
 }
 
-/// Whether "Φ ≥ iso" changes on an interval that begins where it is `inside`.
-pub fn is_crossed<T: Voxel>(field: &Field<T>, interval: &Interval, iso: f64, inside: bool) -> bool {
-    Walk::new(field.lattice, interval).any(|segment| {
-        let corners = field.corners(segment.cell).map(|value| value - iso);
-        let (low, high) = bounds(&corners);
-        if inside && low >= 0.0 || !inside && high < 0.0 {
-            return false;
-        }
-        let above = Field::<T>::along(&corners, &segment);
-        let ends = above.monotone_ends();
-        ends.iter().any(|&s| (above.at(s) >= 0.0) != inside)
-    })
+/// Directions over a light.
+const LIGHT_RAYS: u32 = 256;
+
+/// The share of a light that fills a disc of the sky about the unit vector `toward`, so many radians from its middle to its
+/// edge, in whose directions `is_open`: that of 256 directions, a spiral over equal solid angles.
+pub fn visible_share(toward: DVec3, radius: f64, mut is_open: impl FnMut(DVec3) -> bool) -> f64 {
+    if radius == 0.0 {
+        return f64::from(u8::from(is_open(toward)));
+    }
+    let (across, along) = toward.any_orthonormal_pair();
+    let mut open = 0;
+    for n in (0..LIGHT_RAYS).map(f64::from) {
+        let height = (n + 0.5) / f64::from(LIGHT_RAYS) * 2.0 * (0.5 * radius).sin().powi(2);
+        let aside = (height * (2.0 - height)).sqrt();
+        let (sin, cos) = (TAU * (n * GOLDEN).fract()).sin_cos();
+        let dir = (1.0 - height) * toward + aside * (cos * across + sin * along);
+        open += u32::from(is_open(dir));
+    }
+    f64::from(open) / f64::from(LIGHT_RAYS)
 }
 
 #[cfg(test)]
@@ -53,6 +54,24 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+
+    #[test]
+    fn a_share_of_a_light_is_of_its_solid_angle() {
+        let toward = DVec3::new(0.6, 0.0, -0.8);
+        for radius in [0.02_f64, 0.3, 0.7] {
+            let within = |of: f64| visible_share(toward, radius, |dir| dir.dot(toward) > of.cos());
+            assert_eq!(within(radius * 1.0001), 1.0);
+            let half = 2.0 * (0.5 * radius).sin() * 0.5_f64.sqrt();
+            assert!((within(2.0 * (0.5 * half).asin()) - 0.5).abs() < 0.005);
+            // The control: an angle half as wide has about a quarter of it.
+            assert!((within(0.5 * radius) - 0.25).abs() < 0.02);
+            let (across, _) = toward.any_orthonormal_pair();
+            let beside = visible_share(toward, radius, |dir| dir.dot(across) > 0.0);
+            assert!((beside - 0.5).abs() < 0.02, "{beside}");
+        }
+        assert_eq!(visible_share(toward, 0.0, |dir| dir == toward), 1.0);
+        assert_eq!(visible_share(toward, 0.0, |dir| dir != toward), 0.0);
+    }
 
     #[test]
     fn a_share_of_the_hemisphere_is_weighted_by_the_cosine() {

@@ -63,27 +63,34 @@ impl Lighting {
         &self.lamps
     }
 
-    /// The linear light reflected by a point of base colour `color` whose every light is visible, and which the share
-    /// `reached` of the light from everywhere gets to:
-    /// `color·ambient·reached + Σ L·(color·diffuse·max(n·l, 0) + specular·s)`, after n is turned to the viewer.
-    pub fn reflect(&self, color: [f64; 3], point: LitPoint, reached: f64) -> [f64; 3] {
+    /// The linear light reflected by a point of base colour `color`, which the share `reached` of the light from everywhere
+    /// gets to, and the share `visibility` of each light that it faces:
+    /// `color·ambient·reached + Σ V·L·(color·diffuse·max(n·l, 0) + specular·s)`, after n is turned to the viewer.
+    pub fn reflect(
+        &self,
+        color: [f64; 3],
+        point: LitPoint,
+        reached: f64,
+        visibility: impl Fn(&Lamp) -> f64,
+    ) -> [f64; 3] {
         let ambient = Reflected {
             body: self.phong.ambient_light().map(|channel| channel * reached),
             gloss: [0.0; 3],
         };
-        let all =
-            (self.lamps.iter()).fold(ambient, |sum, lamp| self.with_light(sum, lamp, point, 1.0));
+        let all = (self.lamps.iter()).fold(ambient, |sum, lamp| {
+            self.with_light(sum, lamp, point, &visibility)
+        });
         std::array::from_fn(|c| color[c] * all.body[c] + all.gloss[c])
     }
 
-    /// What one light adds, of which the share `visibility` reaches the point. A point that faces away
+    /// The sum with what one light adds, of which a share reaches the point. A point that faces away
     /// from the light has no specular term.
     fn with_light(
         &self,
         sum: Reflected,
         lamp: &Lamp,
         point: LitPoint,
-        visibility: f64,
+        visibility: &impl Fn(&Lamp) -> f64,
     ) -> Reflected {
         let LitPoint {
             at_world,
@@ -104,6 +111,7 @@ impl Lighting {
             Reflection::Phong => (2.0 * facing * n - to_light).dot(to_viewer),
             Reflection::BlinnPhong => n.dot((to_light + to_viewer).normalize_or_zero()),
         };
+        let visibility = visibility(lamp);
         let s = cosine.max(0.0).powf(self.phong.shininess.get());
         Reflected {
             body: std::array::from_fn(|c| sum.body[c] + visibility * (lamp.diffuse[c] * facing)),

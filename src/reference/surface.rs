@@ -21,6 +21,8 @@ pub struct Crossing {
     pub cell: [usize; 3],
     /// The face or plane that a cap closes, whose normal it has.
     pub cap: Option<Entry>,
+    /// Whether Φ ≥ iso behind it.
+    pub inside: bool,
 }
 
 impl Crossing {
@@ -69,6 +71,7 @@ pub fn first_crossing<T: Voxel>(
                 .map(|component| component.at(s)),
             cell: segment.cell,
             cap: None,
+            inside: !inside,
         };
         if walked == 1 && inside && caps && interval.entry.is_some() {
             let cap = Crossing {
@@ -77,6 +80,7 @@ pub fn first_crossing<T: Voxel>(
                 gradient: [0.0; 3],
                 cell: segment.cell,
                 cap: interval.entry,
+                inside,
             };
             return (Some(cap), walked);
         }
@@ -93,4 +97,28 @@ pub fn first_crossing<T: Voxel>(
         }
     }
     (None, walked)
+}
+
+/// Where "Φ ≥ iso" changes first on an interval that begins where it is `inside`: mm from its start.
+pub fn next_change<T: Voxel>(
+    field: &Field<T>,
+    interval: &Interval,
+    iso: f64,
+    inside: bool,
+) -> Option<f64> {
+    Walk::new(field.lattice, interval).find_map(|segment| {
+        let corners = field.corners(segment.cell).map(|value| value - iso);
+        let (low, high) = bounds(&corners);
+        if inside && low >= 0.0 || !inside && high < 0.0 {
+            return None;
+        }
+        let above = Field::<T>::along(&corners, &segment);
+        let ends = above.monotone_ends();
+        let changed = ends.iter().position(|&s| (above.at(s) >= 0.0) != inside)?;
+        let s = match changed {
+            0 => 0.0,
+            n => above.crossing(0.0, ends[n - 1], ends[n]),
+        };
+        Some(segment.at_mm(s))
+    })
 }

@@ -5,27 +5,26 @@ use glam::{DMat3, DVec3};
 use crate::error::{Error, Result};
 use crate::extent::Range;
 use crate::frame::{Kind, Layer, Wanted};
-use crate::scene::{Emission, Light, Picture, Projection, Ray, Scene, Window, linear_from_srgb};
+use crate::scene::{
+    Emission, Light, LightFrom, Picture, Projection, Ray, Scene, Shadows, Window, linear_from_srgb,
+};
 use crate::volume::{Rescale, Volume, Voxel};
 use crate::with_voxels;
 
 use super::clip::IndexPlane;
-use super::emission::{self, Normals, Shading};
+use super::emission::{self, Normals, Path, Shading};
 use super::field::Field;
 use super::interval::{Entry, IndexRay, Interval};
+use super::leaving::Surroundings;
 use super::medium::Medium;
-use super::occlusion::{is_crossed, open_share};
+use super::occlusion::{open_share, visible_share};
 use super::projection::project;
 use super::shade::{Lighting, LitPoint, normal_from_gradient};
-use super::surface::{Crossing, first_crossing};
+use super::surface::{Crossing, first_crossing, next_change};
 
 /// Differences of Φ up to this share of its largest magnitude are taken for rounding errors where
 /// rising and falling are distinguished.
 const NOISE_SHARE: f64 = 1e-13;
-
-/// How far from a point of the surface the rays that leave it begin, in voxels of the smallest spacing: so far that no
-/// rounding puts their beginning on the other side, unless they leave it within 1e-7 of its tangents.
-const START_VOXELS: f64 = 1e-6;
 
 /// A point of the surface, as the ray that met it sees it.
 struct SurfacePoint {
@@ -34,6 +33,29 @@ struct SurfacePoint {
     normal_world: DVec3,
     /// Whether it is seen from where Φ ≥ iso.
     seen_from_inside: bool,
+}
+
+/// A hit, and what is before it.
+struct Before {
+    /// `None` of a cap.
+    point: Option<SurfacePoint>,
+    /// The normal by which it is shaded.
+    facing: DVec3,
+    at_world: DVec3,
+    to_viewer: DVec3,
+    /// The iso value, without the calibration's intercept.
+    iso: f64,
+}
+
+impl Before {
+    /// The normal by which it is shaded, toward the viewer.
+    fn facing_viewer(&self) -> DVec3 {
+        if self.facing.dot(self.to_viewer) < 0.0 {
+            -self.facing
+        } else {
+            self.facing
+        }
+    }
 }
 
 /// The result of casting one ray; all 0 and the depth +∞ if it meets nothing.
@@ -55,6 +77,12 @@ pub struct RayResult {
     pub kind: Kind,
     /// The share of the light from everywhere that the surface keeps from the hit; 0 where none is asked for.
     pub occlusion: f64,
+    /// The share of the first light that reaches the hit, or of a medium the mean, if it was requested; 0 where no shadows
+    /// are asked for.
+    pub visibility: f64,
+    /// How far the ray goes on behind a surface's hit to its next crossing, or to the end of what is seen of it, mm; 0 if it
+    /// was not requested.
+    pub thick_mm: f64,
 }
 
 impl RayResult {
@@ -66,6 +94,8 @@ impl RayResult {
         cells: 0,
         kind: Kind::Nothing,
         occlusion: 0.0,
+        visibility: 0.0,
+        thick_mm: 0.0,
     };
 }
 
@@ -122,7 +152,8 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Adds the means of a medium that these planes need, which are integrals of their own.
+    /// Adds what these planes need beyond the picture: means of a medium, which are integrals of their own, and how thick a
+    /// surface is.
     #[must_use]
     pub fn wanting(self, wanted: Wanted) -> Self {
         Self { wanted, ..self }
@@ -188,21 +219,33 @@ impl<'a> Tracer<'a> {
             return RayResult::NOTHING;
         };
         let iso = self.volume.rescale().without_intercept(*iso);
-        let occlusion = self.scene.ambient_occlusion.map_or(0.0, |asked| {
-            let point = self.surface_point(field, crossing, interval, ray.dir_world);
-            point.map_or(0.0, |point| {
-                self.occlusion(field, &point, iso, asked.distance.get())
-            })
-        });
         let depth_mm = interval.enter_mm + crossing.at_mm;
+        let at_world = ray.origin_world + ray.dir_world * depth_mm;
+        let before = Before {
+            point: self.surface_point(field, crossing, interval, ray.dir_world),
+            facing: normal_world,
+            at_world,
+            to_viewer,
+            iso,
+        };
+        let occlusion = (self.scene.ambient_occlusion).map_or(0.0, |asked| {
+            self.occlusion(field, &before, asked.distance().get())
+        });
+        let reached = |from: LightFrom| {
+            self.scene.shadows.map_or(1.0, |shadows| {
+                self.visibility(field, &before, from, shadows)
+            })
+        };
         let [r, g, b] = match &self.lighting {
             Some(lighting) => {
                 let point = LitPoint {
-                    at_world: ray.origin_world + ray.dir_world * depth_mm,
+                    at_world,
                     to_viewer,
                     normal: normal_world,
                 };
-                lighting.reflect(color.0, point, self.reached(occlusion))
+                lighting.reflect(color.0, point, self.reached(occlusion), |lamp| {
+                    reached(lamp.from)
+                })
             }
             None => color.0,
         };
@@ -214,12 +257,51 @@ impl<'a> Tracer<'a> {
             cells: 0,
             kind: crossing.kind(),
             occlusion,
+            visibility: self.first_lamp().map_or(0.0, reached),
+            thick_mm: match self.wanted.has(Layer::Thick) {
+                true => self.thick_mm(field, crossing, interval, iso),
+                false => 0.0,
+            },
         }
+    }
+
+    /// The first light of a picture that has shadows, whose visibility is a layer.
+    fn first_lamp(&self) -> Option<LightFrom> {
+        let lighting = self
+            .lighting
+            .as_ref()
+            .filter(|_| self.scene.shadows.is_some())?;
+        lighting.lamps().first().map(|lamp| lamp.from)
+    }
+
+    /// How far a ray goes on behind a crossing to the next one, or to the end of its interval, mm.
+    fn thick_mm<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        crossing: &Crossing,
+        interval: &Interval,
+        iso: f64,
+    ) -> f64 {
+        let start_mm = self.surroundings().start_mm;
+        let from_mm = (crossing.at_mm + start_mm).min(interval.length_mm);
+        let domain = self.volume.dims().domain();
+        let behind = Interval {
+            enter_mm: interval.enter_mm + from_mm,
+            length_mm: interval.length_mm - from_mm,
+            start: std::array::from_fn(|a| {
+                let (low, high) = domain[a];
+                (interval.start[a] + interval.dir[a] * from_mm).clamp(low, high)
+            }),
+            entry: None,
+            ..*interval
+        };
+        let change = next_change(field, &behind, iso, crossing.inside);
+        from_mm - crossing.at_mm + change.unwrap_or(behind.length_mm)
     }
 
     /// The share of the light from everywhere that reaches a point of which this share is occluded.
     fn reached(&self, occlusion: f64) -> f64 {
-        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength.get());
+        let strength = (self.scene.ambient_occlusion).map_or(0.0, |asked| asked.strength().get());
         1.0 - strength * occlusion
     }
 
@@ -248,38 +330,57 @@ impl<'a> Tracer<'a> {
     }
 
     /// 1 − A of a point, A its accessibility within a distance.
-    fn occlusion<T: Voxel>(
+    fn occlusion<T: Voxel>(&self, field: &Field<T>, before: &Before, distance_mm: f64) -> f64 {
+        let Some(point) = &before.point else {
+            return 0.0;
+        };
+        1.0 - open_share(point.normal_world, |dir_world| {
+            self.is_open(field, point, before.iso, dir_world, distance_mm)
+        })
+    }
+
+    /// V of a point of the surface, the share of a light that is seen from there.
+    fn visibility<T: Voxel>(
+        &self,
+        field: &Field<T>,
+        before: &Before,
+        light: LightFrom,
+        shadows: Shadows,
+    ) -> f64 {
+        if light == LightFrom::Eye {
+            return 1.0;
+        }
+        let toward = light.toward(before.at_world, before.to_viewer);
+        let distance_mm = light.distance_mm(before.at_world);
+        let radius = 0.5 * shadows.light_size.get().to_radians();
+        visible_share(toward, radius, |dir_world| match &before.point {
+            // The space before a cap is empty.
+            None => before.facing_viewer().dot(dir_world) > 0.0,
+            Some(point) => {
+                point.normal_world.dot(dir_world) > 0.0
+                    && self.is_open(field, point, before.iso, dir_world, distance_mm)
+            }
+        })
+    }
+
+    /// Whether a ray from a point of the surface does not meet it again within a distance.
+    fn is_open<T: Voxel>(
         &self,
         field: &Field<T>,
         point: &SurfacePoint,
         iso: f64,
+        dir_world: DVec3,
         distance_mm: f64,
-    ) -> f64 {
-        1.0 - open_share(point.normal_world, |dir_world| {
-            let Some(interval) = self.interval_from(point, dir_world, distance_mm) else {
-                return true;
-            };
-            !is_crossed(field, &interval, iso, point.seen_from_inside)
+    ) -> bool {
+        let around = self.surroundings();
+        let interval = around.interval_from(point.index, dir_world, around.start_mm, distance_mm);
+        interval.is_none_or(|interval| {
+            next_change(field, &interval, iso, point.seen_from_inside).is_none()
         })
     }
 
-    /// The part of a ray from a point of the surface that is seen of it; `None` where there is none.
-    fn interval_from(
-        &self,
-        point: &SurfacePoint,
-        dir_world: DVec3,
-        distance_mm: f64,
-    ) -> Option<Interval> {
-        let dir = (self.index_from_world * dir_world).to_array();
-        let start_mm = START_VOXELS * self.volume.geometry().smallest_spacing_mm();
-        let ray = IndexRay {
-            origin: std::array::from_fn(|a| point.index[a] + dir[a] * start_mm),
-            dir,
-        };
-        let dims = self.volume.dims();
-        let mut interval = Interval::new(&ray, dims)?.clipped(&self.clip_planes, dims)?;
-        interval.length_mm = interval.length_mm.min(distance_mm - start_mm);
-        (interval.length_mm > 0.0).then_some(interval)
+    fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings::new(self.volume, self.index_from_world, &self.clip_planes)
     }
 
     fn projection<T: Voxel>(
@@ -306,7 +407,7 @@ impl<'a> Tracer<'a> {
             value,
             cells: projected.walked,
             kind: Kind::Surface,
-            occlusion: 0.0,
+            ..RayResult::NOTHING
         }
     }
 
@@ -318,10 +419,14 @@ impl<'a> Tracer<'a> {
             origin_world,
             dir_world,
         } = ray;
-        let shading = self.lighting.as_ref().map(|lighting| Shading {
-            lighting,
+        let path = Path {
             start_world: origin_world + dir_world * interval.enter_mm,
             dir_world,
+        };
+        let shading = self.lighting.as_ref().map(|lighting| Shading {
+            lighting,
+            path,
+            shadows: self.scene.shadows.map(|_| self.surroundings()),
             shaded_from: picture.shaded_from.get(),
             gradient: self.scene.gradient,
             gradient_world_from_index: self.gradient_world_from_index(),
@@ -337,7 +442,7 @@ impl<'a> Tracer<'a> {
         if (opacity as f32) < Emission::LAYERS_FROM {
             return result;
         }
-        self.with_means(result, field, interval, medium, dir_world)
+        self.with_means(result, field, interval, medium, path)
     }
 
     /// The result for a medium, with the means that are wanted.
@@ -347,8 +452,20 @@ impl<'a> Tracer<'a> {
         field: &Field<T>,
         interval: &Interval,
         medium: &Medium,
-        dir_world: DVec3,
+        path: Path,
     ) -> RayResult {
+        let Path { dir_world, .. } = path;
+        let visibility = match self
+            .first_lamp()
+            .filter(|_| self.wanted.has(Layer::Visibility))
+        {
+            Some(light) => {
+                let around = self.surroundings();
+                emission::mean_visibility(field, interval, medium, path, &around, light)
+            }
+            None => 0.0,
+        };
+        let seen = RayResult { visibility, ..seen };
         let kind = Kind::Surface;
         let means = [Layer::Depth, Layer::Normal, Layer::Value];
         if !self.wanted.has_any(means) {

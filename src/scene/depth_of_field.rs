@@ -25,16 +25,16 @@ pub struct DepthOfField {
 }
 
 /// How depth of field is made on a device (`--dof-method`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DofMethod {
+    /// Each pixel gathers what reaches it of the circles of confusion of the pinhole's picture, and of what that shows
+    /// behind its first surfaces, the nearer before the farther.
+    #[default]
+    Gather,
+    /// The pinhole's picture is mixed with a blurred one by the circles of confusion (Lesar et al. 2015, §III-G).
+    Mix,
     /// The whole picture is cast through so many points of the lens; all pixels share them.
     Lens(RayCount),
-}
-
-impl Default for DofMethod {
-    fn default() -> Self {
-        Self::Lens(RayCount::of(64))
-    }
 }
 
 impl FromStr for DofMethod {
@@ -42,11 +42,13 @@ impl FromStr for DofMethod {
 
     fn from_str(text: &str) -> Result<Self> {
         match text.split_once(':') {
+            None if text.eq_ignore_ascii_case("gather") => Ok(Self::Gather),
+            None if text.eq_ignore_ascii_case("mix") => Ok(Self::Mix),
             Some((name, rays)) if name.eq_ignore_ascii_case("lens") => {
                 Ok(Self::Lens(rays.parse()?))
             }
             _ => Err(Error::usage(format!(
-                "'{text}' is no way to make depth of field: write lens:N, N the number of rays of a pixel"
+                "'{text}' is no way to make depth of field: write gather, mix or lens:N, N the number of rays of a pixel"
             ))),
         }
     }
@@ -55,6 +57,8 @@ impl FromStr for DofMethod {
 impl fmt::Display for DofMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Gather => f.write_str("gather"),
+            Self::Mix => f.write_str("mix"),
             Self::Lens(rays) => write!(f, "lens:{rays}"),
         }
     }
@@ -90,6 +94,9 @@ pub enum Aperture {
 impl DepthOfField {
     /// The diameter of the circles of confusion, in pixels, from which on darkening grows no more.
     pub const DARKEST_PX: f64 = 32.0;
+
+    /// The diameter of the widest circles of confusion that are gathered and mixed, in pixels: wider ones blur as these.
+    pub const WIDEST_PX: f64 = 64.0;
 
     const FORM: &'static str = "focus=MM|auto|pixel:X:Y|percentile:P,aperture=MM[,darken=S], with \
                                 aperture=…deg for an orthographic camera";
@@ -166,6 +173,19 @@ impl DepthOfField {
             }
             _ => [0.0; 2],
         }
+    }
+
+    /// The diameter of the widest circle of confusion of anything between two axial depths, above 0, pixels: at most
+    /// [`DepthOfField::WIDEST_PX`].
+    pub fn widest_px(
+        self,
+        camera: &Camera,
+        size: ImageSize,
+        focus_mm: f64,
+        axial_mm: [f64; 2],
+    ) -> f64 {
+        let circles = axial_mm.map(|mm| self.circle_px(camera, size, focus_mm, mm).abs());
+        circles[0].max(circles[1]).min(Self::WIDEST_PX)
     }
 
     /// The factor of the light of a pixel with a circle of confusion of this diameter.
@@ -349,6 +369,17 @@ mod tests {
         ] {
             let refused = wrong.parse::<DepthOfField>().unwrap_err().to_string();
             assert!(refused.contains(why), "{wrong}: {refused}");
+        }
+    }
+
+    #[test]
+    fn methods_are_named() {
+        for text in ["gather", "mix", "lens:16"] {
+            assert_eq!(text.parse::<DofMethod>().unwrap().to_string(), text);
+        }
+        assert_eq!("GATHER".parse::<DofMethod>(), Ok(DofMethod::default()));
+        for wrong in ["lens", "lens:0", "mix:3", "gather:2", "blur"] {
+            assert!(wrong.parse::<DofMethod>().is_err(), "{wrong}");
         }
     }
 

@@ -82,6 +82,14 @@ impl LightFrom {
             }
         }
     }
+
+    /// Returns how far the light is from a point of the scene, mm; +∞ where it shines from far away, or from the eye.
+    pub fn distance_mm(self, at_world: DVec3) -> f64 {
+        match self {
+            Self::Eye | Self::Direction(_) => f64::INFINITY,
+            Self::Point(light_world) => light_world.distance(at_world),
+        }
+    }
 }
 
 /// A light of a scene (`--light`): a place, a colour and an intensity, in one text

@@ -24,6 +24,8 @@ mod picture;
 mod quadrature;
 pub(crate) mod quantities;
 mod sampling;
+mod screen_occlusion;
+mod shadows;
 mod sparse;
 mod srgb_color;
 pub(crate) mod toml_error;
@@ -49,11 +51,14 @@ pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
     Brightness, Contrast, DistanceMm, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity,
-    RayCount, Reflectance, ScreenError, ShadedFrom, Share, Shininess, StepVoxels, Termination,
+    LightSizeDeg, RayCount, Reflectance, ScreenError, ShadedFrom, ShadowStep, Share, Shininess,
+    StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
 };
+pub use screen_occlusion::{Occlusion, SampleCount, ScreenOcclusion};
+pub use shadows::{GridSide, ShadowMethod, Shadows};
 pub use sparse::{Refill, Sparse, SparseGrid};
 pub use srgb_color::SrgbColor;
 pub use tone::Tone;
@@ -85,7 +90,9 @@ pub struct Scene {
     /// The lights for shading, at most [`Light::MAX_COUNT`].
     pub lights: Vec<Light>,
     /// How much of the light from everywhere a surface keeps from itself; `None`: nothing.
-    pub ambient_occlusion: Option<AmbientOcclusion>,
+    pub ambient_occlusion: Option<Occlusion>,
+    /// How the lights are kept from points of the volume by the volume itself; `None`: they are not.
+    pub shadows: Option<Shadows>,
     /// The lens; `None`: a pinhole.
     pub depth_of_field: Option<DepthOfField>,
     /// How gradients are computed for normals, in the layer and in shading.
@@ -120,6 +127,7 @@ impl Scene {
             sparse: None,
             lights: vec![Light::default()],
             ambient_occlusion: None,
+            shadows: None,
             depth_of_field: None,
             gradient: Gradient::default(),
             tone: Tone::default(),

@@ -81,6 +81,10 @@ quantities! {
     ScreenError: "a screen error", "from 0 to 10", |v| (0.0..=10.0).contains(&v);
     /// How far something may act, mm.
     DistanceMm: "a distance", "above 0 and at most 1e12 mm", |v| v > 0.0 && v <= 1e12;
+    /// The angle that a light fills, degrees; 0: it casts hard shadows.
+    LightSizeDeg = 0.0: "a light's size", "from 0 to 90 degrees", |v| (0.0..=90.0).contains(&v);
+    /// The distance of samples toward a light, in sample steps of the eye's rays.
+    ShadowStep: "a shadow step", "from 0.1 to 100 sample steps", |v| (0.1..=100.0).contains(&v);
     /// A share of a whole.
     Share = 1.0: "a share", "from 0 to 1", |v| (0.0..=1.0).contains(&v);
     /// Number added to the encoded channels of a display picture.

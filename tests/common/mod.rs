@@ -141,6 +141,7 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         },
         lights: vec![Light::default()],
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),

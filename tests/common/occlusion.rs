@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::scene::{
-    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Phong, Picture, RayCount, Refine,
-    Rgb, Sampling, Scene, Share, Tone,
+    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Occlusion, Phong, Picture,
+    RayCount, Refine, Rgb, Sampling, Scene, Share, Tone,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::DVec3;
@@ -54,6 +54,7 @@ pub fn scene(eye: DVec3, point: DVec3, distance_mm: f64) -> Scene {
         sampling: Sampling::default(),
         lights: vec![Light::HEADLIGHT],
         ambient_occlusion: Some(occlusion(1024, distance_mm)),
+        shadows: None,
         depth_of_field: None,
         gradient: Default::default(),
         anti_aliasing: Default::default(),
@@ -62,12 +63,12 @@ pub fn scene(eye: DVec3, point: DVec3, distance_mm: f64) -> Scene {
     }
 }
 
-pub fn occlusion(rays: u32, distance_mm: f64) -> AmbientOcclusion {
-    AmbientOcclusion {
+pub fn occlusion(rays: u32, distance_mm: f64) -> Occlusion {
+    Occlusion::Rays(AmbientOcclusion {
         rays: RayCount::new(rays).unwrap(),
         distance: DistanceMm::new(distance_mm).unwrap(),
         strength: Share::default(),
-    }
+    })
 }
 
 /// A volume of unit spacing from a function of the place.

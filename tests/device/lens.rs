@@ -17,7 +17,7 @@ use crate::common::{self, on_device, on_reference};
 
 /// A block seen from its front face, whose corner lies in the middle of the picture's row: so that its edge is a straight
 /// line between two pixels. It is 100 mm away.
-fn block(lens: Lens, dof: &str) -> (Volume, Scene) {
+pub fn block(lens: Lens, dof: &str) -> (Volume, Scene) {
     let block = common::volume_of([21, 2, 21], |_, _, _| 1.0_f32);
     let picture = Picture::Surface {
         iso: 0.5,
@@ -40,7 +40,7 @@ fn block(lens: Lens, dof: &str) -> (Volume, Scene) {
 
 /// How far the opacities beside the block's edge are at most from those of a blur by discs of a diameter in pixels: of a disc
 /// whose middle is d away from the edge, inside the block, the share 1/2 + (asin c + c √(1 − c²))/π covers it, c = 2d/diameter.
-fn apart(frame: &Frame, diameter_px: f64) -> f64 {
+pub fn apart(frame: &Frame, diameter_px: f64) -> f64 {
     let share = |pixel: usize| {
         let inside = 32.0 - (pixel as f64 + 0.5); // the block is on the left
         let c = (2.0 * inside / diameter_px).clamp(-1.0, 1.0);
@@ -102,7 +102,7 @@ fn an_edge_out_of_focus_is_blurred_by_the_circle_of_confusion() {
     }
 }
 
-fn vessels(mode: Mode, dof: &str) -> (Volume, Scene) {
+pub fn vessels(mode: Mode, dof: &str) -> (Volume, Scene) {
     let dims = Dims::new([48; 3]).unwrap();
     let volume = phantom(&PhantomSpec::new(PhantomKind::Vessels, dims))
         .unwrap()

@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod agreement;
 mod anti_aliasing;
+mod blur;
 mod clip_planes;
 mod edge_scenes;
 mod exact;
@@ -16,6 +17,8 @@ mod jitter;
 mod lens;
 mod lights;
 mod metamorphic;
+#[path = "../common/mutated.rs"]
+mod mutated;
 mod occlusion;
 #[path = "../common/occlusion.rs"]
 mod occlusion_cases;
@@ -25,6 +28,11 @@ mod recon;
 mod refinement;
 mod sampling_alone;
 mod screen_error;
+mod screen_occlusion;
+mod shadows;
+#[path = "../common/slab.rs"]
+mod slab;
 mod sparse;
 mod termination;
+mod thickness;
 mod voxel_images;

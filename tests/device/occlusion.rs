@@ -110,6 +110,7 @@ fn more_rays_are_less_wrong() {
         &volume,
         &Scene {
             ambient_occlusion: None,
+            shadows: None,
             ..scenes[0].clone()
         },
     );
@@ -265,6 +266,7 @@ fn every_ray_has_its_own_however_many_there_are() {
         .render(
             &Scene {
                 ambient_occlusion: None,
+                shadows: None,
                 ..many.clone()
             },
             Wanted::ALL,

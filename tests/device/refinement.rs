@@ -79,6 +79,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         anti_aliasing: Default::default(),
         sparse: None,
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         tone: Tone::default(),
     };

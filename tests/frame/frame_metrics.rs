@@ -3,10 +3,10 @@
 
 use angioray::extent::ImageSize;
 use angioray::frame::error::{
-    Scale, color_error, depth_error, figures, flip, normal_error, occlusion_error, ssim,
-    value_error,
+    PartError, Scale, color_error, depth_error, figures, flip, focus_error, normal_error,
+    share_error, ssim, value_error,
 };
-use angioray::frame::{DEPTH, Frame, Layers, NORMAL, OCCLUSION, VALUE};
+use angioray::frame::{COC, DEPTH, Frame, Layers, NORMAL, OCCLUSION, VALUE, VISIBILITY};
 
 fn picture(width: u32, height: u32, at: impl Fn(i64, i64, i64) -> f64) -> Frame {
     let size = ImageSize::new(width, height).unwrap();
@@ -43,7 +43,7 @@ fn near(figure: f64, expected: f64, within: f64) {
 }
 
 #[test]
-fn occlusion_is_compared_where_both_cover() {
+fn shares_of_light_are_compared_where_both_cover() {
     let with = |occlusion: [f32; 4], alphas: [f32; 4]| {
         let mut frame = flat(4, 1, 0.5);
         frame.color = alphas.map(|alpha| [0.0, 0.0, 0.0, alpha]).to_vec();
@@ -52,19 +52,55 @@ fn occlusion_is_compared_where_both_cover() {
     };
     let reference = with([0.5, 0.25, 0.0, 0.75], [1.0, 1.0, 1.0, 0.0]);
     let frame = with([0.75, 0.125, 0.0, 0.5], [1.0; 4]);
-    let error = occlusion_error(&reference, &frame).unwrap();
+    let error = share_error(&reference, &frame, OCCLUSION).unwrap();
     // 0.25 too dark, 0.125 too bright, and one that is right.
     assert_eq!(error.compared, 3);
     assert_eq!((error.mean, error.bias), (Some(0.125), Some(0.125 / 3.0)));
     assert_eq!((error.p99, error.max), (Some(0.25), Some(0.25)));
     // The other way round it is as far, and too bright.
-    let error = occlusion_error(&frame, &reference).unwrap();
+    let error = share_error(&frame, &reference, OCCLUSION).unwrap();
     assert_eq!((error.mean, error.bias), (Some(0.125), Some(-0.125 / 3.0)));
+    // Another plane of shares is another.
+    assert!(share_error(&reference, &frame, VISIBILITY).is_err());
     // Where nothing is to be compared there is no figure; without the plane there is an error.
     let none = with([0.0; 4], [0.0; 4]);
-    let error = occlusion_error(&reference, &none).unwrap();
+    let error = share_error(&reference, &none, OCCLUSION).unwrap();
     assert_eq!((error.compared, error.mean, error.bias), (0, None, None));
-    assert!(occlusion_error(&reference, &flat(4, 1, 0.5)).is_err());
+    assert!(share_error(&reference, &flat(4, 1, 0.5), OCCLUSION).is_err());
+}
+
+#[test]
+fn focus_parts_pixels_by_depth_and_circle() {
+    let with = |level: f64, alphas: [f32; 6]| {
+        let mut frame = flat(6, 1, level);
+        frame.color = alphas.map(|alpha| [0.0, 0.0, 0.0, alpha]).to_vec();
+        let far = f32::INFINITY;
+        let depths = vec![9.0, 9.0, 5.0, 20.0, far, far];
+        frame.layers.insert(DEPTH, depths);
+        frame
+            .layers
+            .insert(COC, vec![0.5, -0.5, -0.6, 3.0, 7.0, 7.0]);
+        frame
+    };
+    let reference = with(0.5, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+    let mut frame = with(0.5, [1.0, 1.0, 1.0, 1.0, 0.25, 0.0]);
+    // The fifth pixel is covered by the picture alone, the last by neither.
+    let display = frame.display.as_mut().unwrap();
+    for (pixel, by) in [(1, 0.125), (2, 0.25), (4, 0.5), (5, 0.5)] {
+        display[pixel] = display[pixel].map(|channel| channel + by);
+    }
+    let error = focus_error(&reference, &frame).unwrap();
+    let part = |part: PartError| (part.pixels, part.rmse.unwrap());
+    let (pixels, rmse) = part(error.in_focus);
+    assert_eq!(pixels, 2);
+    near(rmse, 0.125 / 2.0_f64.sqrt(), 1e-12);
+    assert_eq!(part(error.near), (1, 0.25));
+    assert_eq!(part(error.far), (1, 0.0));
+    assert_eq!(part(error.beside), (1, 0.5));
+    near(error.near.psnr_db.unwrap(), -20.0 * 0.25_f64.log10(), 1e-12);
+    assert_eq!(error.far.psnr_db, Some(f64::INFINITY));
+    // Without circles there is nothing to part them by.
+    assert!(focus_error(&flat(6, 1, 0.5), &frame).is_err());
 }
 
 #[test]

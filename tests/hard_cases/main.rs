@@ -9,6 +9,8 @@ mod emission;
 mod isosurface;
 mod limits;
 mod mutant;
+#[path = "../common/mutated.rs"]
+mod mutated;
 mod pixels;
 mod rays;
 mod trial;

@@ -380,68 +380,38 @@ fn what_gpus_cannot_do_does_not_become_code_for_them() {
 fn the_switches_are_read_from_the_kernels() {
     let variant = variant(VoxelType::U8, Filter::Linear, Storage::Buffer, 8, false);
     let of = |path| {
-        switches(&flatten(path).unwrap(), &variant)
-            .into_iter()
-            .map(|(name, values)| (name, values.len()))
-            .collect::<Vec<_>>()
+        let named = switches(&flatten(path).unwrap(), &variant).into_iter();
+        let counted = named.map(|(name, values)| format!("{name}:{}", values.len()));
+        counted.collect::<Vec<_>>().join(" ")
     };
-    let named = |pairs: &[(&str, usize)]| {
-        pairs
-            .iter()
-            .map(|&(name, n)| (name.to_owned(), n))
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(
-        of("pass/cast_surface.cl"),
-        named(&[
-            ("COUNTERS", 2),
-            ("JITTERED", 2),
-            ("LANES", 3),
-            ("LAYERS", 2),
-            ("NEAREST_MARCH", 2),
-            ("RAYS", 4)
-        ])
-    );
-    assert_eq!(
-        of("pass/cast_maximum.cl"),
-        named(&[
-            ("COUNTERS", 2),
-            ("JITTERED", 2),
-            ("LANES", 3),
-            ("LAYERS", 2),
-            ("PROJECTION", 3),
-            ("RAYS", 4)
-        ])
-    );
-    assert_eq!(
-        of("pass/cast_emission.cl"),
-        named(&[
-            ("COUNTERS", 2),
-            ("GRADIENT", 4),
-            ("HOMOGENEOUS", 2),
-            ("JITTERED", 2),
-            ("LANES", 3),
-            ("LAYERS", 2),
-            ("NORMALS", 2),
-            ("QUADRATURE", 6),
-            ("RAYS", 4),
-            ("SHADED", 2)
-        ])
-    );
-    assert_eq!(
-        of("pass/surface_normal.cl"),
-        named(&[("GRADIENT", 4), ("LANES", 3), ("RAYS", 4)])
-    );
-    assert_eq!(
-        of("pass/shade_surface.cl"),
-        named(&[("LANES", 3), ("OCCLUSION", 2), ("RAYS", 4), ("SHADED", 2)])
-    );
-    assert_eq!(of("pass/tone_curve.cl"), named(&[("LANES", 3)]));
     // Work-items that are no tiles of rays have one number of lanes.
-    assert_eq!(
-        of("pass/mark_uncertain.cl"),
-        named(&[("LANES", 1), ("SEEN", 3), ("SURFACES", 2)])
-    );
+    for (path, expected) in [
+        (
+            "pass/cast_surface.cl",
+            "COUNTERS:2 JITTERED:2 LANES:3 LAYERS:2 NEAREST_MARCH:2 RAYS:4",
+        ),
+        (
+            "pass/cast_maximum.cl",
+            "COUNTERS:2 JITTERED:2 LANES:3 LAYERS:2 PROJECTION:3 RAYS:4",
+        ),
+        (
+            "pass/cast_emission.cl",
+            "COUNTERS:2 GRADIENT:4 HOMOGENEOUS:2 JITTERED:2 LANES:3 LAYERS:2 NORMALS:2 QUADRATURE:6 RAYS:4 SHADED:2 SHADOWS:4 VISIBILITY:2",
+        ),
+        ("pass/surface_normal.cl", "GRADIENT:4 LANES:3 RAYS:4"),
+        (
+            "pass/shade_surface.cl",
+            "LANES:3 OCCLUSION:2 RAYS:4 SHADED:2 VISIBILITY:2",
+        ),
+        (
+            "pass/thickness.cl",
+            "CERTIFICATE:3 LANES:3 LAYERS:2 MARCHED:2 RAYS:4 SPANS:2",
+        ),
+        ("pass/tone_curve.cl", "LANES:3"),
+        ("pass/mark_uncertain.cl", "LANES:1 SEEN:3 SURFACES:2"),
+    ] {
+        assert_eq!(of(path), expected, "{path}");
+    }
 }
 
 #[test]

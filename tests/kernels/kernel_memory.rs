@@ -162,7 +162,7 @@ const MODES: [&str; 22] = [
 
 /// Fewer rays and more of them, and samples of their own, of the last volume, which has several leaves: they share the casts
 /// with the others.
-const RAY_COUNTS: [&str; 13] = [
+const RAY_COUNTS: [&str; 20] = [
     "--mode iso --iso 40% --screen-error 0.5",
     "--mode mip --screen-error 0.3",
     "--mode dvr --shading none --screen-error 0.3",
@@ -172,7 +172,14 @@ const RAY_COUNTS: [&str; 13] = [
     "--mode mip --sparse 3 --refill flood",
     "--mode iso --iso 40% --sparse 4:0.1",
     "--mode iso --iso 40% --aa 2 --ao rays=2,distance=3",
+    "--mode iso --iso 40% --shadows on --light-size 9 --light 1,1,1 --light point:40,5,9",
+    "--mode dvr --shading phong --shadows cached:5 --light 1,1,1 --light point:40,5,9",
+    "--mode iso --iso 40% --aa 2 --ssao radius=6,samples=8",
+    "--mode iso --iso 40% --sparse 4:0.1 --ssao radius=6,samples=8,thickness=2",
     "--mode dvr --dof focus=auto,aperture=2,darken=1 --dof-method lens:2",
+    "--mode iso --iso 40% --aa 2 --dof focus=percentile:10,aperture=9",
+    "--mode dvr --dof focus=auto,aperture=9,darken=1 --dof-method gather",
+    "--mode iso --iso 40% --dof focus=auto,aperture=9 --dof-method mix",
     "--mode iso --iso 40% --step 0.7 --jitter interleaved:3",
     "--mode mip --step 1.3 --jitter hash:5 --aa 2",
     "--mode dvr --shading none --quad midpoint --jitter hash:5:2",
@@ -206,7 +213,8 @@ fn no_pass_reads_or_writes_outside_its_buffers_or_races() {
         for (m, mode) in of_modes.chain(of_counts) {
             // Filters take turns, but for what needs gradients, and so do all layers and none but the display's.
             let turn = (v / 2 + m / 2) % 2;
-            let filter = ["linear", "nearest"][if mode.contains("--ao") { 0 } else { turn }];
+            let needs_linear = ["--ao", "--ssao"].iter().any(|flag| mode.contains(flag));
+            let filter = ["linear", "nearest"][if needs_linear { 0 } else { turn }];
             let (layers, extension) = [("--aov all", "exr"), ("", "png")][(v / 2 + m / 4) % 2];
             let arguments = format!("{mode} --filter {filter} {layers} {VIEW}");
             jobs.push((path.clone(), arguments, format!("{v}-{m}.{extension}")));

@@ -75,6 +75,7 @@ pub fn scene(picture: Picture) -> Scene {
         sampling: Sampling::default(),
         lights: vec![Light::HEADLIGHT],
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),

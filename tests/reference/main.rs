@@ -9,4 +9,7 @@ mod occlusion;
 mod occlusion_cases;
 mod picture;
 mod projection;
+#[path = "../common/slab.rs"]
+mod slab;
 mod surface;
+mod thickness;

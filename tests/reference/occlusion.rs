@@ -1,7 +1,7 @@
 //! Ambient occlusion by definition, against closed forms.
 
 use angioray::reference::{RayResult, Tracer};
-use angioray::scene::{Picture, Scene, Share};
+use angioray::scene::{Occlusion, Picture, Scene, Share};
 
 use crate::occlusion_cases::{self, Case, balls, inside_edge, occlusion, planes, tubes};
 
@@ -46,10 +46,10 @@ fn only_the_light_from_everywhere_is_occluded() {
     };
     let color_with = |strength: f64| {
         let mut scene = case.scene.clone();
-        scene.ambient_occlusion = scene.ambient_occlusion.map(|mut asked| {
-            asked.strength = Share::new(strength).unwrap();
-            asked
-        });
+        let Some(Occlusion::Rays(asked)) = &mut scene.ambient_occlusion else {
+            panic!("rays");
+        };
+        asked.strength = Share::new(strength).unwrap();
         seen(&case, &scene).color
     };
     let mut without = case.scene.clone();

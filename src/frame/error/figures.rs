@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::frame::{Frame, Layer};
+use crate::frame::{Frame, Key, Layer, OCCLUSION, VISIBILITY};
 
 use super::{
-    ColorError, DepthError, NormalError, OcclusionError, ValueError, color_error, depth_error,
-    flip, normal_error, occlusion_error, ssim, value_error,
+    ColorError, DepthError, FocusError, NormalError, ShareError, ValueError, color_error,
+    depth_error, flip, focus_error, normal_error, share_error, ssim, value_error,
 };
 
 /// The units that depths and values are measured in.
@@ -34,8 +34,12 @@ pub struct Figures {
     pub normal: Option<NormalError>,
     /// `None` also where all values of the volume are equal: no share of their range can be said.
     pub value: Option<ValueError>,
-    /// The error of what the surface keeps from its hits.
-    pub occlusion: Option<OcclusionError>,
+    /// The error of what the surface keeps from its hits: with a bias above 0 the picture is too dark.
+    pub occlusion: Option<ShareError>,
+    /// The error of what reaches the hits of the first light: with a bias above 0 the picture is too bright.
+    pub visibility: Option<ShareError>,
+    /// The error of the displayed colours in focus, before and behind it and beside what is seen, of pictures through a lens.
+    pub focus: Option<FocusError>,
 }
 
 /// Compares all planes that both pictures have. Which planes make sense for a picture is the
@@ -48,7 +52,11 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
     let both_have = |layer| reference.layers.has(layer) && frame.layers.has(layer);
     let deep = both_have(Layer::Depth);
     let oriented = both_have(Layer::Normal);
-    let occluded = both_have(Layer::Occlusion);
+    let share = |key: Key<f32>| {
+        both_have(key.layer())
+            .then(|| share_error(reference, frame, key))
+            .transpose()
+    };
     let valued = both_have(Layer::Value) && scale.range_width != 0.0;
     Ok(Figures {
         color: shown.then(|| color_error(reference, frame)).transpose()?,
@@ -63,8 +71,10 @@ pub fn figures(reference: &Frame, frame: &Frame, scale: Scale) -> Result<Figures
         value: valued
             .then(|| value_error(reference, frame, scale.range_width))
             .transpose()?,
-        occlusion: occluded
-            .then(|| occlusion_error(reference, frame))
+        occlusion: share(OCCLUSION)?,
+        visibility: share(VISIBILITY)?,
+        focus: (shown && deep && both_have(Layer::Coc))
+            .then(|| focus_error(reference, frame))
             .transpose()?,
     })
 }

@@ -199,6 +199,7 @@ pub fn through(volume: &Volume, point: DVec3, toward: DVec3, emission: Emission)
         sparse: None,
         lights: vec![Default::default()],
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         gradient: Default::default(),
         tone: Default::default(),

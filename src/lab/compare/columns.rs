@@ -2,6 +2,7 @@
 
 use crate::lab::report::{Cell, Shown, Table};
 
+use crate::frame::error::Figures;
 use crate::scene::Mode;
 
 use super::row::Row;
@@ -131,6 +132,15 @@ const ALL: &[Column] = &[
         row.error.and_then(|e| e.occlusion?.p99).into()
     }),
     OCCLUSION_BIAS,
+    VISIBILITY_MEAN,
+    ("visibility_p99", "visibility p99", Shown::Fixed(4), |row| {
+        row.error.and_then(|e| e.visibility?.p99).into()
+    }),
+    VISIBILITY_BIAS,
+    FOCUSED_RMSE,
+    NEAR_RMSE,
+    FAR_RMSE,
+    BESIDE_RMSE,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -221,6 +231,35 @@ const OCCLUSION_MEAN: Column = ("occlusion_mean", "occlusion mean", Shown::Fixed
 const OCCLUSION_BIAS: Column = ("occlusion_bias", "occlusion bias", Shown::Fixed(4), |row| {
     row.error.and_then(|e| e.occlusion?.bias).into()
 });
+const VISIBILITY_MEAN: Column = (
+    "visibility_mean",
+    "visibility mean",
+    Shown::Fixed(4),
+    |row| row.error.and_then(|e| e.visibility?.mean).into(),
+);
+/// Above 0 where the picture is too bright.
+const VISIBILITY_BIAS: Column = (
+    "visibility_bias",
+    "visibility bias",
+    Shown::Fixed(4),
+    |row| row.error.and_then(|e| e.visibility?.bias).into(),
+);
+/// Of pixels in focus, before and behind it, and where nothing is seen but through the lens.
+const FOCUSED_RMSE: Column = (
+    "focused_rmse",
+    "in focus rmse, %",
+    Shown::Percent(4),
+    |row| row.error.and_then(|e| e.focus?.in_focus.rmse).into(),
+);
+const NEAR_RMSE: Column = ("near_rmse", "near rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.near.rmse).into()
+});
+const FAR_RMSE: Column = ("far_rmse", "far rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.far.rmse).into()
+});
+const BESIDE_RMSE: Column = ("beside_rmse", "beside rmse, %", Shown::Percent(4), |row| {
+    row.error.and_then(|e| e.focus?.beside.rmse).into()
+});
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
 });
@@ -236,15 +275,11 @@ const NAME: Column = ("setting", "setting", Shown::Short, |row| row.title().into
 
 /// The columns for surfaces, which show their hits; for projections, their values.
 const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
-/// The same where light from everywhere is occluded.
-const OF_OCCLUDED: &[Column] = &[
-    WRONG_HITS,
-    MISSED,
-    EXTRA,
-    DEPTH_P99,
-    OCCLUSION_MEAN,
-    OCCLUSION_BIAS,
-];
+/// Those beside them where light from everywhere is occluded, and where there are shadows.
+const OF_OCCLUDED: &[Column] = &[OCCLUSION_MEAN, OCCLUSION_BIAS];
+const OF_SHADOWS: &[Column] = &[VISIBILITY_MEAN, VISIBILITY_BIAS];
+/// And where there is a lens.
+const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE, BESIDE_RMSE];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.
@@ -258,24 +293,24 @@ pub fn short_table(rows: &[Row]) -> Table {
     let projection = rows
         .iter()
         .any(|row| row.error.is_some_and(|error| error.value.is_some()));
-    let occluded = rows
-        .iter()
-        .any(|row| row.error.is_some_and(|error| error.occlusion.is_some()));
+    let any_has = |has: fn(&Figures) -> bool| {
+        (rows.iter()).any(|row| row.error.is_some_and(|error| has(&error)))
+    };
+    let columns_if = |has, columns| if any_has(has) { columns } else { &[][..] };
     let own: &[Column] = match (surface, projection) {
-        (true, _) if occluded => OF_OCCLUDED,
         (true, _) => OF_SURFACES,
         (_, true) => OF_PROJECTIONS,
         _ => &[],
     };
     let columns = [NAME, FRAME_MS, PROCESSOR_MS].into_iter();
-    let columns = columns.chain(own.iter().copied()).chain([
-        RMSE,
-        MAX,
-        SSIM,
-        FLIP,
-        SAMPLES_PER_RAY,
-        NODES_PER_RAY,
-    ]);
+    let own = (own.iter())
+        .chain(columns_if(|error| error.occlusion.is_some(), OF_OCCLUDED))
+        .chain(columns_if(|error| error.visibility.is_some(), OF_SHADOWS))
+        .chain(columns_if(|error| error.focus.is_some(), OF_LENS));
+    let columns =
+        columns
+            .chain(own.copied())
+            .chain([RMSE, MAX, SSIM, FLIP, SAMPLES_PER_RAY, NODES_PER_RAY]);
     let columns: Vec<Column> = columns.chain(remark(rows)).collect();
     table(rows, columns.iter())
 }

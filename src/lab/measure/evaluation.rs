@@ -21,10 +21,12 @@ pub fn evaluated_planes(scene: &Scene) -> Wanted {
     let surface = matches!(scene.picture, Picture::Surface { .. });
     let projection = matches!(scene.picture, Picture::Projection { .. });
     Wanted::DISPLAY
-        .with_if(surface, Layer::Depth)
+        .with_if(surface || scene.depth_of_field.is_some(), Layer::Depth)
         .with_if(surface, Layer::Normal)
         .with_if(projection, Layer::Value)
         .with_if(scene.ambient_occlusion.is_some(), Layer::Occlusion)
+        .with_if(scene.shadows.is_some(), Layer::Visibility)
+        .with_if(scene.depth_of_field.is_some(), Layer::Coc)
         .with(Layer::COUNTERS)
         .with([Layer::Kind])
 }

@@ -3,7 +3,7 @@
 use crate::frame::{Certificate, Kind};
 use crate::scene::{
     ClipPlane, DepthOfField, Gradient, Light, LightFrom, QuadratureMethod, RefineMethod,
-    Reflection, Storage, TransferFunction, Traverse,
+    Reflection, ShadowMethod, Storage, TransferFunction, Traverse,
 };
 
 /// An enum that kernels know by numbers.
@@ -103,6 +103,15 @@ kernel_enum! {
         LightFrom::Eye => LIGHT_FROM_EYE = 0,
         LightFrom::Direction(_) => LIGHT_FROM_DIRECTION = 1,
         LightFrom::Point(_) => LIGHT_FROM_POINT = 2,
+    }
+}
+
+kernel_enum! {
+    Option<ShadowMethod> {
+        None => SHADOWS_NONE = 0,
+        Some(ShadowMethod::Exact) => SHADOWS_EXACT = 1,
+        Some(ShadowMethod::Stepped(_)) => SHADOWS_STEPPED = 2,
+        Some(ShadowMethod::Cached(_)) => SHADOWS_CACHED = 3,
     }
 }
 
@@ -213,7 +222,16 @@ pub const LISTED_SQUARE: u32 = 16;
 pub const CHECKED_OF: u32 = 256;
 
 /// How many sets of directions there are in which rays leave points of a surface: each pixel of a square has its own.
-pub const HEMISPHERES: u32 = 64;
+pub const RAY_SETS: u32 = 64;
+
+/// Pixels along each side of the squares in which each pixel looks at its surroundings in sections of its own.
+pub const SECTION_SQUARE: u32 = 4;
+
+/// Parts of a section's half circle, a bit each: words of 32 bits are shifted by less.
+pub const SECTORS: u32 = 31;
+
+/// Pixels along the edge of the squares of which it is known how far the circles of confusion reach.
+pub const BLURRED_SQUARE: u32 = 8;
 
 /// The mark of a pixel that was cast.
 pub const MARK_CAST: u32 = 1;
@@ -236,8 +254,12 @@ const NUMBERS: &[(&str, u32)] = &[
     ("ADAPTIVE_HALVINGS", ADAPTIVE_HALVINGS),
     ("LISTED_SQUARE", LISTED_SQUARE),
     ("CHECKED_OF", CHECKED_OF),
-    ("HEMISPHERES", HEMISPHERES),
+    ("RAY_SETS", RAY_SETS),
+    ("SECTION_SQUARE", SECTION_SQUARE),
+    ("SECTORS", SECTORS),
     ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
+    ("WIDEST_PX", DepthOfField::WIDEST_PX as u32),
+    ("BLURRED_SQUARE", BLURRED_SQUARE),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),
@@ -262,6 +284,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         Gradient::CONSTANTS,
         <Option<Reflection>>::CONSTANTS,
         LightFrom::CONSTANTS,
+        <Option<ShadowMethod>>::CONSTANTS,
         QuadratureMethod::CONSTANTS,
         Class::CONSTANTS,
         Rays::CONSTANTS,

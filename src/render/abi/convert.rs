@@ -4,8 +4,8 @@ use crate::scene::{Jitter as SceneJitter, Rgb, Sampling, Tone as SceneTone, Wind
 use crate::volume::{Rescale, Volume};
 
 use super::structs::{
-    EmissionCast, Jitter, LightSource, ProjectionCast, RayGrid, Shading, SurfaceCast, Tone,
-    VolumeGrid,
+    EmissionCast, Jitter, LightGrid, LightSource, ProjectionCast, RayGrid, Shading, SurfaceCast,
+    Tone, VolumeGrid,
 };
 
 /// Name, size and field offsets, in bytes, of every struct that is shared with the kernels.
@@ -16,6 +16,7 @@ pub fn struct_layouts() -> Vec<(&'static str, Vec<u32>)> {
         ("SurfaceCast", SurfaceCast::layout()),
         ("ProjectionCast", ProjectionCast::layout()),
         ("EmissionCast", EmissionCast::layout()),
+        ("LightGrid", LightGrid::layout()),
         ("LightSource", LightSource::layout()),
         ("Jitter", Jitter::layout()),
         ("Shading", Shading::layout()),

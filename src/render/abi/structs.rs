@@ -121,7 +121,13 @@ device_struct! {
         absorbs_to: f32,
         /// The opacity from which a pixel has a depth, a value and a normal.
         layers_from: f32,
-        pad: u32,
+        /// The mm of a unit of t along the rays that leave a point ([`super::covector_scale`]).
+        mm_per_t: f32,
+        /// The distance of samples along the rays toward lights.
+        shadow_step_mm: f32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
     }
 }
 
@@ -139,6 +145,27 @@ device_struct! {
         start: u32,
         pad_0: u32,
         pad_1: u32,
+    }
+}
+
+device_struct! {
+    /// A grid of optical depths that stands in a light: `side` points along each edge of a square across it, and as many
+    /// one behind the other. Index space: dot products with (p, 1).
+    LightGrid {
+        /// A point's column, times what `over` gives.
+        x: [f32; 4],
+        /// A point's row, times what `over` gives.
+        y: [f32; 4],
+        over: [f32; 4],
+        /// A point's place along the light.
+        depth: [f32; 4],
+        /// 0: the light has no grid.
+        side: u32,
+        /// The first of its depths.
+        first: u32,
+        /// The distance of points along the light.
+        spacing_mm: f32,
+        pad: u32,
     }
 }
 

@@ -16,7 +16,7 @@ use crate::scene::AntiAliasing;
 
 use super::listing::{Listed, Listing};
 use super::picture::schedule;
-use super::planes::Planes;
+use super::planes::{Centers, Planes};
 use super::room::RAYS_AT_A_TIME;
 use super::sample_check::SampleCheck;
 use super::schedule::Schedule;
@@ -64,8 +64,9 @@ pub fn cast_antialiased(
     }
     run.announcing = false;
 
-    if aa.is_adaptive() || view.wanted.has_layers() {
+    if aa.is_adaptive() || view.wanted.has_layers() || centers.needs_centers() {
         centers.cast(run, &mut planes)?;
+        centers.finish(run, &mut planes)?;
         planes.rays_per_round.push(run.rays.places() as u64);
     }
     if aa.is_adaptive() {
@@ -130,9 +131,17 @@ impl Samples<'_> {
     /// Casts the rays of the listed pixels and puts their means in the planes' colour and coverage.
     fn show(&self, run: &mut Run, listed: &Listed, planes: &mut Planes) -> Result<()> {
         let Planes {
-            color, coverage, ..
+            color,
+            coverage,
+            layers,
+            screen,
+            ..
         } = &mut *planes;
-        let bytes = self.cast(run, listed, |run, pixels, cast| {
+        let centers = Centers {
+            layers,
+            screen: screen.as_ref(),
+        };
+        let bytes = self.cast(run, listed, centers, |run, pixels, cast| {
             let coverage = coverage.as_mut();
             mean_of_samples(run, pixels, &cast.color, &cast.layers, color, coverage)
         })?;
@@ -153,7 +162,7 @@ impl Samples<'_> {
     ) -> Result<Buffer<[f32; 2]>> {
         let count = listed.next().len();
         let mut apart = Buffer::new(run.device, "differences of pixels", count)?;
-        self.cast(run, listed, |run, pixels, cast| {
+        self.cast(run, listed, planes.centers(), |run, pixels, cast| {
             compare_samples(run, pixels, &cast.color, &planes.color, &mut apart)
         })?;
         self.count(run, listed, planes);
@@ -190,6 +199,7 @@ impl Samples<'_> {
         &self,
         run: &mut Run,
         listed: &Listed,
+        centers: Centers,
         mut each: impl FnMut(&mut Run, &SampledPixels, &Planes) -> Result<()>,
     ) -> Result<u64> {
         let (&grid, size) = run.picture()?;
@@ -208,7 +218,7 @@ impl Samples<'_> {
         let mut cast = self.schedule.planes(run)?;
         for first in (0..count).step_by(pixels_at_a_time) {
             run.rays = samples(part(first));
-            self.schedule.cast(run, &mut cast)?;
+            self.schedule.cast_between(run, centers, &mut cast)?;
             let pixels = SampledPixels {
                 listed: &listed.pixels,
                 part: part(first),

@@ -2,8 +2,10 @@
 
 use crate::error::Result;
 use crate::render::passes::Run;
+use crate::scene::DofMethod;
 
 use super::antialias::cast_antialiased;
+use super::blur::{gather, mix};
 use super::lens::see_through_lens;
 use super::picture::schedule;
 use super::planes::Planes;
@@ -14,11 +16,15 @@ use super::view::View;
 /// asks for, and through its lens.
 ///
 /// # Errors
-/// As [`schedule`], [`Run::cast`] and [`see_through_lens`].
+/// As [`schedule`], [`Run::cast`], [`gather`] and [`see_through_lens`].
 pub fn cast_picture(run: &mut Run, view: &View, is_whole: bool) -> Result<Planes> {
     let mut planes = cast_through_pinhole(run, view, is_whole)?;
     if let Some(dof) = view.scene.depth_of_field.filter(|_| is_whole) {
-        see_through_lens(run, view, &mut planes, dof)?;
+        match view.scene.sampling.dof {
+            DofMethod::Gather => gather(run, view, &mut planes, dof)?,
+            DofMethod::Mix => mix(run, view, &mut planes, dof)?,
+            DofMethod::Lens(rays) => see_through_lens(run, view, &mut planes, dof, rays)?,
+        }
     }
     Ok(planes)
 }
@@ -34,6 +40,7 @@ fn cast_through_pinhole(run: &mut Run, view: &View, is_whole: bool) -> Result<Pl
     }
     let mut planes = schedule.planes(run)?;
     schedule.cast(run, &mut planes)?;
+    schedule.finish(run, &mut planes)?;
     planes.rays_per_round.push(run.rays.count() as u64);
     Ok(planes)
 }

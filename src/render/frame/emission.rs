@@ -3,17 +3,19 @@
 use crate::error::{Error, Result};
 use crate::frame::Layer;
 use crate::gpu::Buffer;
-use crate::render::abi::{EmissionCast, KernelEnum, Material, Shading, shading};
+use crate::render::abi::{EmissionCast, KernelEnum, Material, Shading, covector_scale, shading};
 use crate::render::occupancy::{Opacity, stand_ins};
 use crate::render::passes::{
-    Blocks, EmissionInputs, MediumBlocks, Reflects, Run, Seen, SurfaceBlocks, adaptive_emission,
-    cast_emission, mark_uncertain, mark_varying_light,
+    Blocks, EmissionInputs, LightDepths, MediumBlocks, Reflects, Run, Seen, SurfaceBlocks,
+    adaptive_emission, cast_emission, mark_uncertain, mark_varying_light,
 };
 use crate::render::resources::{DeviceGradient, DeviceTransfer, Tables};
 use crate::scene::{
-    Emission, Gradient, Light, Quadrature, Rgb, ScreenError, TransferFunction, Traverse,
+    Emission, Gradient, Light, Quadrature, Rgb, Scene, ScreenError, ShadowMethod, TransferFunction,
+    Traverse,
 };
 
+use super::light_grids::LightGrids;
 use super::planes::Planes;
 use super::schedule::Schedule;
 use super::view::View;
@@ -29,6 +31,9 @@ pub struct EmissionPasses<'a> {
     cast: EmissionCast,
     shading: Shading,
     is_shaded: bool,
+    shadows: Option<ShadowMethod>,
+    /// Grids in the lights, where shadows are found by them.
+    light_grids: Option<LightGrids>,
     reflects: Reflects,
 }
 
@@ -47,7 +52,15 @@ impl<'a> EmissionPasses<'a> {
         check_gradient(emission, view.scene.gradient)?;
         let quadrature = emission.quadrature;
         let with_values = layers(view).contains(&Layer::Value);
-        let tables = Tables::of(quadrature.method(), run.variant.filter, with_values);
+        let shadows = shadows(view, emission);
+        let tables = Tables::of(quadrature.method(), run.variant.filter, with_values)
+            .with_sums_if(integrates(shadows), with_values);
+        let light_grids = match shadows {
+            Some(ShadowMethod::Cached(side)) => {
+                Some(LightGrids::new(run.device, view.scene, view.volume, side)?)
+            }
+            _ => None,
+        };
         let transfer = DeviceTransfer::upload(run.device, &opacity.knots, tables)?;
         let node_average = node_average(run, view, emission)?;
         let material = Material {
@@ -61,6 +74,8 @@ impl<'a> EmissionPasses<'a> {
             cast: emission_cast(view, emission, &transfer, node_average.is_some()),
             shading: shading(&material, view.scene, view.volume),
             is_shaded: emission.phong.is_some(),
+            shadows,
+            light_grids,
             reflects: reflects(emission, &view.scene.lights),
             transfer,
             node_average,
@@ -75,30 +90,23 @@ impl Schedule for EmissionPasses<'_> {
             .node_average
             .as_ref()
             .map_or(0, |averages| averages.bytes());
-        planes.other_bytes = self.transfer.bytes() + averages_bytes;
+        let grids_bytes = self.light_grids.as_ref().map_or(0, |grids| grids.bytes());
+        planes.other_bytes = self.transfer.bytes() + averages_bytes + grids_bytes;
         Ok(planes)
     }
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
-        let Planes { color, layers, .. } = planes;
-        let inputs = EmissionInputs {
-            cast_inputs: self.view.inputs,
-            transfer: &self.transfer,
-            node_average: self.node_average.as_ref(),
-            gradient: if self.is_shaded || layers.has(Layer::Normal) {
-                self.view.gradient
-            } else {
-                DeviceGradient::NONE
-            },
-            cast: self.cast,
-            shading: self.shading,
-            shaded: self.is_shaded,
+        let Some(grids) = &self.light_grids else {
+            return self.cast_with(run, planes, None);
         };
-        if self.quadrature.is_stepped() {
-            cast_emission(run, self.quadrature.method(), &inputs, color, layers)
-        } else {
-            adaptive_emission(run, &inputs, color, layers)
-        }
+        grids.fill(
+            run,
+            self.view.inputs,
+            &self.transfer,
+            &self.cast,
+            self.view.volume,
+        )?;
+        grids.read(|depths| self.cast_with(run, planes, Some(depths)))
     }
 
     /// The error is of a channel's linear light, and of the opacity.
@@ -130,6 +138,49 @@ impl Schedule for EmissionPasses<'_> {
     }
 }
 
+impl EmissionPasses<'_> {
+    /// The cast, with what is known of the lights' shadows.
+    fn cast_with(
+        &self,
+        run: &mut Run,
+        planes: &mut Planes,
+        light_grids: Option<LightDepths>,
+    ) -> Result<()> {
+        let Planes { color, layers, .. } = planes;
+        let inputs = EmissionInputs {
+            cast_inputs: self.view.inputs,
+            transfer: &self.transfer,
+            node_average: self.node_average.as_ref(),
+            gradient: if self.is_shaded || layers.has(Layer::Normal) {
+                self.view.gradient
+            } else {
+                DeviceGradient::NONE
+            },
+            cast: self.cast,
+            shading: self.shading,
+            shaded: self.is_shaded,
+            shadows: self.shadows,
+            light_grids,
+        };
+        if self.quadrature.is_stepped() {
+            cast_emission(run, self.quadrature.method(), &inputs, color, layers)
+        } else {
+            adaptive_emission(run, &inputs, color, layers)
+        }
+    }
+}
+
+/// How what reaches points of lights is found, where the medium is shaded.
+fn shadows(view: &View, emission: &Emission) -> Option<ShadowMethod> {
+    let shadows = view.scene.shadows.filter(|_| emission.phong.is_some());
+    shadows.map(|shadows| shadows.method)
+}
+
+/// Whether what feelers pass is integrated over values.
+fn integrates(shadows: Option<ShadowMethod>) -> bool {
+    matches!(shadows, Some(ShadowMethod::Exact | ShadowMethod::Cached(_)))
+}
+
 fn check_homogeneity(emission: &Emission) -> Result<()> {
     let refuses = emission.phong.is_some() || !emission.quadrature.is_stepped();
     if emission.homogeneity.is_some() && refuses {
@@ -159,6 +210,9 @@ fn layers(view: &View) -> Vec<Layer> {
     }
     if wanted.has(Layer::Normal) {
         layers.push(Layer::Normal);
+    }
+    if wanted.has(Layer::Visibility) && view.scene.shadows.is_some() {
+        layers.push(Layer::Visibility);
     }
     if wanted.has_any(Layer::COUNTERS) {
         layers.extend(Layer::COUNTERS);
@@ -215,7 +269,19 @@ fn emission_cast(
         absorbs_from: on_device.absorbing[0],
         absorbs_to: on_device.absorbing[1],
         layers_from: Emission::LAYERS_FROM,
-        pad: 0,
+        mm_per_t: covector_scale(view.volume).recip() as f32,
+        shadow_step_mm: view.step_mm() * shadow_steps(view.scene) as f32,
+        pad_0: 0,
+        pad_1: 0,
+        pad_2: 0,
+    }
+}
+
+/// The distance of samples along the rays toward lights, in sample steps of the eye's rays.
+fn shadow_steps(scene: &Scene) -> f64 {
+    match scene.shadows.map(|shadows| shadows.method) {
+        Some(ShadowMethod::Stepped(steps)) => steps.get(),
+        _ => 1.0,
     }
 }
 

@@ -1,11 +1,12 @@
 //! Depth of field: the mean of the pictures that points of a lens see.
 
 use crate::error::Result;
-use crate::frame::{Layer, PlaneEntry, Wanted};
-use crate::render::passes::{Circles, Run, add_picture, circles_of_confusion};
+use crate::frame::{Layer, Wanted};
+use crate::render::passes::{Run, add_picture};
 use crate::render::resources::RaySource;
-use crate::scene::{AntiAliasing, DepthOfField, DofMethod, LensPoint, RayCount, Scene};
+use crate::scene::{AntiAliasing, DepthOfField, LensPoint, RayCount, Scene};
 
+use super::focus::{circles, focus_mm};
 use super::picture::schedule;
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -24,13 +25,13 @@ pub fn see_through_lens(
     view: &View,
     planes: &mut Planes,
     dof: DepthOfField,
+    rays: RayCount,
 ) -> Result<()> {
     let of_points = View {
         wanted: Wanted::NONE,
         ..*view
     };
     let schedule = schedule(run, &of_points)?;
-    let DofMethod::Lens(rays) = view.scene.sampling.dof;
     let lens = LensPictures {
         view,
         schedule: schedule.as_ref(),
@@ -42,14 +43,22 @@ pub fn see_through_lens(
         .allocate(run.device, &run.rays, &[Layer::Coc])?;
     run.announcing = true;
     lens.add(run, 0, None, &mut seen, planes)?;
-    circles(run, view.scene, dof, 1.0, planes)?;
+    circles(
+        run,
+        view.scene,
+        dof,
+        1.0,
+        &mut planes.layers,
+        &mut planes.color,
+    )?;
     run.announcing = false;
 
     let focus_mm = focus_mm(run, view.scene, dof, planes)?;
     for (n, point) in dof.lens_points(rays, focus_mm, 0.0).enumerate() {
         lens.add(run, n, Some(point), &mut seen, planes)?;
     }
-    circles(run, view.scene, dof, focus_mm, planes)?;
+    let Planes { layers, color, .. } = &mut *planes;
+    circles(run, view.scene, dof, focus_mm, layers, color)?;
     planes.focus_mm = Some(focus_mm);
     planes
         .rays_per_round
@@ -85,6 +94,7 @@ impl LensPictures<'_> {
         let source = RaySource::through_lens(camera, *size, self.view.volume, point, place);
         let pinhole = std::mem::replace(&mut run.rays, source);
         self.schedule.cast(run, seen)?;
+        self.schedule.finish(run, seen)?;
         run.rays = pinhole;
         let share = 1.0 / self.rays.get() as f32;
         add_picture(run, share, n == 0, &seen.color, &mut planes.color)
@@ -95,44 +105,4 @@ impl LensPictures<'_> {
 fn nth_place(aa: AntiAliasing, n: usize) -> [f64; 2] {
     let mut places = aa.places_px().skip(n % aa.rays() as usize);
     places.next().unwrap_or([0.5; 2])
-}
-
-/// How far away the focal plane is, mm; waits for the depths where they decide it.
-fn focus_mm(run: &mut Run, scene: &Scene, dof: DepthOfField, planes: &Planes) -> Result<f64> {
-    if !dof.focus.is_seen() {
-        return dof.focus.distance_mm(&[], scene.size);
-    }
-    run.timings.start(run.device)?;
-    let depths = planes.layers.download(run.device, Layer::Depth)?;
-    let depths: Vec<f32> = depths.and_then(PlaneEntry::out_of).unwrap_or_default();
-    let width = scene.size.width();
-    let axial = |(pixel, depth): (u32, f32)| {
-        let (x, y) = (
-            f64::from(pixel % width) + 0.5,
-            f64::from(pixel / width) + 0.5,
-        );
-        let ray = scene.camera.ray(scene.size, x, y);
-        f64::from(depth) * ray.dir_world.dot(scene.camera.forward())
-    };
-    let axial_mm: Vec<f64> = (0..).zip(depths).map(axial).collect();
-    dof.focus.distance_mm(&axial_mm, scene.size)
-}
-
-/// The planes' circles of confusion, and their colour darkened by them.
-fn circles(
-    run: &mut Run,
-    scene: &Scene,
-    dof: DepthOfField,
-    focus_mm: f64,
-    planes: &mut Planes,
-) -> Result<()> {
-    let [from_inverse, from_depth] = dof.growth_px(&scene.camera, scene.size);
-    let circles = Circles {
-        focus_mm: focus_mm as f32,
-        from_inverse: from_inverse as f32,
-        from_depth: from_depth as f32,
-        darken: dof.darken.get() as f32,
-    };
-    let Planes { layers, color, .. } = planes;
-    circles_of_confusion(run, circles, layers, color)
 }

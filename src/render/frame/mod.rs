@@ -2,9 +2,12 @@
 //! read-back.
 
 mod antialias;
+mod blur;
 mod casting;
 mod emission;
+mod focus;
 mod lens;
+mod light_grids;
 mod listing;
 mod picture;
 mod planes;
@@ -14,6 +17,7 @@ mod room;
 mod sample_check;
 mod sampled;
 mod schedule;
+mod screen;
 mod sparse;
 mod step;
 mod surface;

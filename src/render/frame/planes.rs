@@ -6,11 +6,38 @@ use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
 use crate::render::abi::MARK_CAST;
 use crate::render::passes::{Compared, Run};
-use crate::render::resources::DeviceLayers;
+use crate::render::resources::{DeviceLayers, Spans};
 use crate::scene::Emission;
 use crate::volume::Rescale;
 
 use super::sample_check::SampleCheck;
+
+/// What a picture's occlusion is estimated from.
+pub struct ScreenPlanes {
+    /// The spans of depths that rays spend inside the surface.
+    pub spans: Spans,
+    /// What is estimated of each hit's occlusion before it is smoothed.
+    pub estimate: Buffer<f32>,
+}
+
+impl ScreenPlanes {
+    /// Device memory held by a pixel, in bytes.
+    pub const PIXEL_BYTES: u64 = 8 + 4;
+
+    fn bytes(&self) -> u64 {
+        let Self { spans, estimate } = self;
+        spans.depths.bytes() + estimate.bytes()
+    }
+}
+
+/// What is known of the rays through the centres of all pixels.
+#[derive(Clone, Copy)]
+pub struct Centers<'a> {
+    /// Their layers.
+    pub layers: &'a DeviceLayers,
+    /// What their occlusion was estimated from, where it was.
+    pub screen: Option<&'a ScreenPlanes>,
+}
 
 /// Planes of a picture on the device.
 pub struct Planes {
@@ -23,6 +50,10 @@ pub struct Planes {
     pub layers: DeviceLayers,
     /// t of each hit, mm from the base plane; a surface's.
     pub hit_mm: Option<Buffer<f32>>,
+    /// What reaches each hit of each light, where shadows are cast.
+    pub lights_reached: Option<Buffer<[f32; 4]>>,
+    /// What its occlusion is estimated from, where it is.
+    pub screen: Option<ScreenPlanes>,
     /// The share of each pixel's rays that met something, where it is wanted.
     pub coverage: Option<Buffer<f32>>,
     /// The marks, which say which pixels were cast; `None`: all were.
@@ -50,6 +81,8 @@ impl Planes {
             display: None,
             layers: planes,
             hit_mm: None,
+            lights_reached: None,
+            screen: None,
             coverage: None,
             cast: None,
             check: None,
@@ -64,7 +97,21 @@ impl Planes {
         let display = self.display.as_ref().map_or(0, |display| display.bytes());
         let hit = self.hit_mm.as_ref().map_or(0, |hit| hit.bytes());
         let cast = self.cast.as_ref().map_or(0, |cast| cast.bytes());
-        self.color.bytes() + display + hit + cast + self.layers.bytes() + self.other_bytes
+        let reached = self
+            .lights_reached
+            .as_ref()
+            .map_or(0, |reached| reached.bytes());
+        let screen = self.screen.as_ref().map_or(0, |screen| screen.bytes());
+        let layers = self.layers.bytes() + screen + reached;
+        self.color.bytes() + display + hit + cast + layers + self.other_bytes
+    }
+
+    /// What is known of pixels' centres.
+    pub fn centers(&self) -> Centers<'_> {
+        Centers {
+            layers: &self.layers,
+            screen: self.screen.as_ref(),
+        }
     }
 
     /// What pixels are compared by.

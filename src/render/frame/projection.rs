@@ -128,7 +128,7 @@ impl Schedule for ProjectionPasses<'_> {
         marks: &Buffer<u32>,
         planes: &mut Planes,
     ) -> Result<()> {
-        fill_uncast(run, fill, marks, None, &mut planes.layers)?;
+        fill_uncast(run, fill, marks, None, None, &mut planes.layers)?;
         window_value(run, self.window, &planes.layers, &mut planes.color)
     }
 }

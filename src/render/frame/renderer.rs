@@ -14,7 +14,7 @@ use crate::render::resources::{
     DeviceClip, DeviceDirections, DeviceGradient, DeviceVoxels, GradientFigures, HeldVolume,
     RaySource, needed_gradients,
 };
-use crate::scene::{Light, SamplingMethod, Scene, Storage};
+use crate::scene::{Light, Occlusion, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
@@ -166,7 +166,7 @@ impl<'a> Renderer<'a> {
     /// layer's value where nothing is known ([`Layer::empty`](crate::frame::Layer::empty)).
     ///
     /// # Errors
-    /// As [`Renderer::render`]; a pixel outside the picture; no pixels.
+    /// As [`Renderer::render`]; a pixel outside the picture; no pixels; usage: occlusion that is estimated from the picture.
     pub fn render_pixels(
         &mut self,
         scene: &Scene,
@@ -183,6 +183,9 @@ impl<'a> Renderer<'a> {
         pixels: Option<&[u32]>,
     ) -> Result<Rendering> {
         self.check_scene(scene)?;
+        if pixels.is_some() {
+            check_alone(scene)?;
+        }
         let listing_bytes = listing_bytes(scene);
         let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree) + listing_bytes;
         check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
@@ -271,7 +274,7 @@ impl<'a> Renderer<'a> {
         let (device, volume, octree) = (self.device, self.volume, self.octree);
         let start = Instant::now();
         let criterion = Criterion::of(scene, wanted, volume, octree);
-        let tables = OccupancyTables::of_scene(scene);
+        let tables = OccupancyTables::of_scene(scene, wanted);
         let (occupancy, is_new) = self
             .occupancies
             .get(device, volume, octree, tables, criterion)?;
@@ -334,6 +337,16 @@ fn jitter_of(scene: &Scene) -> Option<Jitter> {
     match scene.sampling_method() {
         SamplingMethod::Fixed => jitter(scene.sampling.jitter),
         SamplingMethod::Exact => None,
+    }
+}
+
+/// Checks that pixels of a scene can be rendered without those around them.
+fn check_alone(scene: &Scene) -> Result<()> {
+    match scene.ambient_occlusion {
+        Some(Occlusion::Screen(_)) => Err(Error::usage(
+            "occlusion that is estimated from the picture needs all of its pixels",
+        )),
+        Some(Occlusion::Rays(_)) | None => Ok(()),
     }
 }
 

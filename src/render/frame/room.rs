@@ -5,8 +5,10 @@ use crate::extent::{Dims, ImageSize};
 use crate::frame::{Layer, Wanted};
 use crate::gpu::{DeviceInfo, DeviceKind};
 use crate::render::resources::DeviceLayers;
-use crate::scene::Scene;
+use crate::scene::{DofMethod, Occlusion, Scene};
 use crate::volume::VoxelType;
+
+use super::planes::ScreenPlanes;
 
 /// Rays that are cast at a time where a pixel has many: their planes take some tens of megabytes.
 pub const RAYS_AT_A_TIME: usize = 1 << 20;
@@ -30,7 +32,8 @@ pub fn check_volume(device: &DeviceInfo, dims: Dims, voxel: VoxelType) -> Result
 }
 
 /// The bytes that a scene's picture takes on the device for marks and lists of pixels, for the planes of the rays that are
-/// cast at a time where a pixel has many, and for those of the picture that one point of a lens sees.
+/// cast at a time where a pixel has many, and for those that depth of field is made of: the picture that one point of a lens
+/// sees, what surfaces hide and the discs of both, or blurred pictures.
 pub fn listing_bytes(scene: &Scene) -> u64 {
     /// A mark, and two numbers in the list.
     const LISTED: u64 = 4 + 8;
@@ -40,7 +43,23 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
         scene.size.pixels() as u64,
         u64::from(scene.anti_aliasing.rays()),
     );
-    let of_lens = scene.depth_of_field.map_or(0, |_| pixels * RAY);
+    let of_screen = match scene.ambient_occlusion {
+        Some(Occlusion::Screen(_)) => ScreenPlanes::PIXEL_BYTES,
+        Some(Occlusion::Rays(_)) | None => 0,
+    };
+    /// A depth and a circle of confusion.
+    const DEEP: u64 = 4 + 4;
+    /// A disc, and what it covers.
+    const DISC: u64 = 4 + 4;
+    /// Light, premultiplied.
+    const LIGHT: u64 = 16;
+    let of_lens = match (scene.depth_of_field, scene.sampling.dof) {
+        (None, _) => 0,
+        (Some(_), DofMethod::Gather) => RAY + DEEP + 2 * DISC + LIGHT,
+        (Some(_), DofMethod::Mix) => DISC + 2 * LIGHT,
+        (Some(_), DofMethod::Lens(_)) => RAY + of_screen,
+    };
+    let of_lens = pixels * (of_lens + of_screen);
     if rays > 1 {
         return of_lens + pixels * LISTED + RAY * (pixels * rays).min(RAYS_AT_A_TIME as u64);
     }
@@ -60,10 +79,12 @@ pub fn check_picture(
 ) -> Result<()> {
     const COLOR: u64 = 16;
     const HIT: u64 = 4;
+    /// What reaches the hits of each light.
+    const REACHED: u64 = 16;
     let display = if wanted.display { COLOR } else { 0 };
     // Layers that are not wanted may be needed to make those that are.
     let layers: u64 = Layer::ALL.map(DeviceLayers::entry_bytes).iter().sum();
-    let on_device = COLOR + display + HIT + layers;
+    let on_device = COLOR + display + HIT + REACHED + layers;
     let read_back = match device.kind {
         DeviceKind::Cpu => on_device,
         DeviceKind::Gpu | DeviceKind::Accelerator => 0,
@@ -129,7 +150,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (2 * 16 + 10 * 4);
+        let needs = 100 * (3 * 16 + 12 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

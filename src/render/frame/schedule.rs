@@ -6,7 +6,7 @@ use crate::render::abi::Filling;
 use crate::render::passes::{Blocks, Fill, Run, fill_uncast};
 use crate::scene::ScreenError;
 
-use super::planes::Planes;
+use super::planes::{Centers, Planes};
 
 /// The passes of one kind of picture, with everything uploaded that they read beside the view.
 pub trait Schedule {
@@ -21,6 +21,28 @@ pub trait Schedule {
     /// # Errors
     /// As [`Run::cast`].
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()>;
+
+    /// Puts the launches at the end that show what only the whole picture tells, when its planes are full. Returns whether they
+    /// change what pixels show that were cast.
+    ///
+    /// # Errors
+    /// As [`Run::screen`].
+    fn finish(&self, _run: &mut Run, _planes: &mut Planes) -> Result<bool> {
+        Ok(false)
+    }
+
+    /// Whether what rays show that pass pixels beside their centres depends on the whole picture of those.
+    fn needs_centers(&self) -> bool {
+        false
+    }
+
+    /// As [`Schedule::cast`], of several rays in each of some pixels, beside those of the `centers` of all, which is finished.
+    ///
+    /// # Errors
+    /// As [`Run::cast`].
+    fn cast_between(&self, run: &mut Run, _centers: Centers, planes: &mut Planes) -> Result<()> {
+        self.cast(run, planes)
+    }
 
     /// Puts the launch at the end that marks the pixels to be cast next, because interpolation in their blocks is not proven
     /// to keep an error; blocks' corners among them.
@@ -54,8 +76,14 @@ pub trait Schedule {
         marks: &Buffer<u32>,
         planes: &mut Planes,
     ) -> Result<()> {
-        let Planes { color, layers, .. } = planes;
-        fill_uncast(run, fill, marks, Some(color), layers)
+        let Planes {
+            color,
+            layers,
+            screen,
+            ..
+        } = planes;
+        let spans = screen.as_mut().map(|screen| &mut screen.spans);
+        fill_uncast(run, fill, marks, Some(color), spans, layers)
     }
 
     /// What pixels are filled with whose blocks [`Schedule::mark_unproven`] has left out.
@@ -75,5 +103,28 @@ pub trait Schedule {
         _planes: &mut Planes,
     ) -> Result<()> {
         Err(Error::failed("only a surface is interpolated by its hits"))
+    }
+
+    /// Room for the planes of what first surfaces hide; `None`: the picture has no surfaces.
+    ///
+    /// # Errors
+    /// The device has no room.
+    fn hidden_planes(&self, _run: &Run) -> Result<Option<Planes>> {
+        Ok(None)
+    }
+
+    /// Puts the launches at the end that fill `hidden` with what the rays of the run see behind the exit of the first vessel that
+    /// they meet in `planes`, where `reaches` says that something uneven is near.
+    ///
+    /// # Errors
+    /// As [`Run::cast`]; the picture has no surfaces.
+    fn cast_hidden(
+        &self,
+        _run: &mut Run,
+        _reaches: &Buffer<[f32; 4]>,
+        _planes: &Planes,
+        _hidden: &mut Planes,
+    ) -> Result<()> {
+        Err(Error::failed("only a surface hides another"))
     }
 }

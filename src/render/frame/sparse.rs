@@ -53,6 +53,7 @@ pub fn cast_sparsely(
     listing.announce(run, &mut marks)?;
     rule.refill(run, &planes, &mut marks)?;
     rule.fill(run, &marks, &mut planes)?;
+    schedule.finish(run, &mut planes)?;
     let all = std::mem::replace(&mut run.rays, pixels(&list, list.next()));
     schedule.cast(run, &mut planes)?;
     if rule.interpolates_hits() {
@@ -77,6 +78,9 @@ pub fn cast_sparsely(
     }
     run.rays = all;
     rule.fill(run, &marks, &mut planes)?;
+    if schedule.finish(run, &mut planes)? {
+        rule.fill(run, &marks, &mut planes)?;
+    }
     planes.cast = Some(marks);
     Ok(planes)
 }

@@ -7,16 +7,19 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Leaving, Lit, Run, Seen, SurfaceBlocks, ambient_occlusion, cast_surface, exact_surface,
-    interpolate_hits, mark_uncertain, shade_surface, surface_normal,
+    Blocks, Hiding, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights,
+    ambient_occlusion, behind_surface, cast_shadows, cast_surface, exact_surface, interpolate_hits,
+    mark_uncertain, occlusion_between, shade_surface, surface_normal,
 };
-use crate::render::resources::Hemispheres;
+use crate::render::resources::{RaySets, RaySource};
 use crate::scene::{
-    AmbientOcclusion, Filter, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError, ShadedFrom,
+    AmbientOcclusion, Filter, Occlusion, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError,
+    ShadedFrom,
 };
 
-use super::planes::Planes;
+use super::planes::{Centers, Planes};
 use super::schedule::Schedule;
+use super::screen::{ScreenPasses, find_thickness};
 use super::view::View;
 
 /// How a scene's surface is found and seen, but for its iso value.
@@ -37,14 +40,41 @@ pub struct SurfacePasses<'a> {
     cast: SurfaceCast,
     light: Shading,
     is_shaded: bool,
-    occlusion: Option<Occlusion>,
+    occlusion: Option<FoundBy>,
+    /// The directions about the middle of each light, where shadows are cast.
+    shadows: Option<RaySets>,
 }
 
-/// Ambient occlusion with what its pass reads.
-struct Occlusion {
-    asked: AmbientOcclusion,
-    hemispheres: Hemispheres,
+/// How ambient occlusion is found, with what the passes read.
+enum FoundBy {
+    Rays {
+        asked: AmbientOcclusion,
+        directions: RaySets,
+    },
+    Screen(ScreenPasses),
 }
+
+impl FoundBy {
+    fn new(run: &Run, asked: Occlusion) -> Result<Self> {
+        Ok(match asked {
+            Occlusion::Rays(asked) => Self::Rays {
+                asked,
+                directions: RaySets::over_hemisphere(run.device, asked.rays.get())?,
+            },
+            Occlusion::Screen(asked) => Self::Screen(ScreenPasses::new(run, asked)?),
+        })
+    }
+
+    fn bytes(&self) -> u64 {
+        match self {
+            Self::Rays { directions, .. } => directions.bytes(),
+            Self::Screen(passes) => passes.bytes(),
+        }
+    }
+}
+
+/// The rays toward each light from a hit, where the light has a size.
+const SOFT_RAYS: u32 = 32;
 
 /// How far from a surface the rays that leave it begin, in voxels of the smallest spacing: so far that single
 /// precision knows the side on which they are, unless they leave it within a few thousandths of its tangents.
@@ -61,18 +91,20 @@ impl<'a> SurfacePasses<'a> {
             phong: surface.phong,
             shaded_from: ShadedFrom::default(),
         };
-        let occlusion = |asked: AmbientOcclusion| {
-            Ok(Occlusion {
-                asked,
-                hemispheres: Hemispheres::upload(run.device, asked.rays.get())?,
-            })
-        };
+        let scene = view.scene;
+        let is_shaded = surface.phong.is_some();
+        let shadows = scene.shadows.filter(|_| is_shaded).map(|shadows| {
+            let radius = 0.5 * shadows.light_size.get().to_radians();
+            RaySets::over_light(run.device, SOFT_RAYS, radius)
+        });
+        let occlusion = |asked| FoundBy::new(run, asked);
         Ok(Self {
             view,
             cast: surface_cast(view, iso, surface),
-            light: shading(&material, view.scene, view.volume),
-            is_shaded: surface.phong.is_some(),
-            occlusion: view.scene.ambient_occlusion.map(occlusion).transpose()?,
+            light: shading(&material, scene, view.volume),
+            is_shaded,
+            occlusion: scene.ambient_occlusion.map(occlusion).transpose()?,
+            shadows: shadows.transpose()?,
         })
     }
 
@@ -95,11 +127,17 @@ impl<'a> SurfacePasses<'a> {
         let is_compared = scene
             .sparse
             .is_some_and(|sparse| sparse.refill == Refill::Flood);
-        if wanted.has(Layer::Normal) || self.is_shaded || is_compared {
+        if wanted.has(Layer::Normal) || self.is_shaded || is_compared || self.screen().is_some() {
             layers.push(Layer::Normal);
         }
         if self.occlusion.is_some() {
             layers.push(Layer::Occlusion);
+        }
+        if self.shadows.is_some() && wanted.has(Layer::Visibility) {
+            layers.push(Layer::Visibility);
+        }
+        if wanted.has(Layer::Thick) {
+            layers.push(Layer::Thick);
         }
         layers
     }
@@ -107,32 +145,52 @@ impl<'a> SurfacePasses<'a> {
 
 impl Schedule for SurfacePasses<'_> {
     fn planes(&self, run: &Run) -> Result<Planes> {
-        let mut planes = Planes::new(run, &self.layers())?;
-        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
-        let hemispheres = self.occlusion.as_ref();
-        planes.other_bytes += hemispheres.map_or(0, |occlusion| occlusion.hemispheres.bytes());
+        let mut planes = self.planes_of(run, &self.layers())?;
+        if let Some(screen) = self.screen()
+            && run.rays.picture().is_some()
+        {
+            planes.screen = Some(screen.planes(run, self.view)?);
+        }
+        planes.other_bytes += self.occlusion.as_ref().map_or(0, FoundBy::bytes);
+        planes.other_bytes += self.shadows.as_ref().map_or(0, RaySets::bytes);
         Ok(planes)
     }
 
     fn cast(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
-        let Self { view, .. } = *self;
-        let sampling = &view.scene.sampling;
-        let Planes {
+        self.find_hits(run, planes)?;
+        self.find_thickness(run, planes)?;
+        self.show(run, planes)
+    }
+
+    fn finish(&self, run: &mut Run, planes: &mut Planes) -> Result<bool> {
+        let Some(screen) = self.screen() else {
+            return Ok(false);
+        };
+        screen.find(run, self.view, &self.cast, planes)?;
+        self.shade(run, true, planes)?;
+        Ok(true)
+    }
+
+    fn needs_centers(&self) -> bool {
+        self.screen().is_some()
+    }
+
+    fn cast_between(&self, run: &mut Run, centers: Centers, planes: &mut Planes) -> Result<()> {
+        let Some(of_centers) = centers.screen else {
+            return self.cast(run, planes);
+        };
+        self.find_hits(run, planes)?;
+        self.find_normals(run, planes)?;
+        if let Planes {
             hit_mm: Some(hit_mm),
             layers,
             ..
         } = planes
-        else {
-            return Ok(());
-        };
-        let (inputs, cast) = (view.inputs, &self.cast);
-        match sampling.method {
-            SamplingMethod::Fixed => {
-                cast_surface(run, inputs, cast, sampling.recon, hit_mm, layers)?
-            }
-            SamplingMethod::Exact => exact_surface(run, inputs, cast, hit_mm, layers)?,
+        {
+            let known = (&of_centers.spans, centers.layers);
+            occlusion_between(run, known, hit_mm, layers)?;
         }
-        self.show(run, planes)
+        self.shade(run, true, planes)
     }
 
     /// Fixed steps are not held against the surface itself: of them only emptiness is proven.
@@ -184,40 +242,204 @@ impl Schedule for SurfacePasses<'_> {
         {
             interpolate_hits(run, self.cast.iso, marks, hit_mm, layers)?;
         }
+        self.find_thickness(run, planes)?;
         self.show(run, planes)
+    }
+
+    fn hidden_planes(&self, run: &Run) -> Result<Option<Planes>> {
+        let mut layers = vec![Layer::Kind, Layer::Depth];
+        if self.is_shaded {
+            layers.push(Layer::Normal);
+        }
+        if matches!(self.occlusion, Some(FoundBy::Rays { .. })) {
+            layers.push(Layer::Occlusion);
+        }
+        self.planes_of(run, &layers).map(Some)
+    }
+
+    fn cast_hidden(
+        &self,
+        run: &mut Run,
+        reaches: &Buffer<[f32; 4]>,
+        planes: &Planes,
+        hidden: &mut Planes,
+    ) -> Result<()> {
+        let (Some(hit_mm), Some(hidden_mm)) = (&planes.hit_mm, &mut hidden.hit_mm) else {
+            return Ok(());
+        };
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
+        let hiding = Hiding {
+            reaches,
+            after_mm: (START_VOXELS * spacing_mm) as f32,
+            hit_mm,
+        };
+        let layers = &mut hidden.layers;
+        behind_surface(run, self.view.inputs, &self.cast, hiding, hidden_mm, layers)?;
+        self.find_normals(run, hidden)?;
+        self.light_hits(run, hidden)
     }
 }
 
 impl SurfacePasses<'_> {
-    /// Finds the normals of the rays' hits and what is occluded of them, where those are needed, and shades them.
-    fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+    /// Room for these layers and for what the passes hand on from a hit to its colour.
+    fn planes_of(&self, run: &Run, layers: &[Layer]) -> Result<Planes> {
+        let mut planes = Planes::new(run, layers)?;
+        planes.hit_mm = Some(run.plane("hit plane", f32::INFINITY)?);
+        if self.shadows.is_some() {
+            planes.lights_reached = Some(run.plane("plane of lights", [0.0; 4])?);
+        }
+        Ok(planes)
+    }
+
+    /// The passes that estimate occlusion from the picture, where it is found so.
+    fn screen(&self) -> Option<&ScreenPasses> {
+        match &self.occlusion {
+            Some(FoundBy::Screen(passes)) => Some(passes),
+            _ => None,
+        }
+    }
+
+    /// Finds how far rays go on behind their hits, where that is needed.
+    fn find_thickness(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let spacing_mm = self.view.volume.geometry().smallest_spacing_mm();
+        let exact = Thickness::Exact {
+            inputs: self.view.inputs,
+            cast: &self.cast,
+            start_mm: (START_VOXELS * spacing_mm) as f32,
+        };
+        let taken = self.screen().and_then(ScreenPasses::thickness);
+        find_thickness(run, exact, taken, planes)
+    }
+
+    fn find_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Self { view, cast, .. } = self;
+        let sampling = &view.scene.sampling;
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
-            color,
             ..
         } = planes
         else {
             return Ok(());
         };
-        if layers.has(Layer::Normal) {
-            surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)?;
+        match sampling.method {
+            SamplingMethod::Fixed => {
+                cast_surface(run, view.inputs, cast, sampling.recon, hit_mm, layers)
+            }
+            SamplingMethod::Exact => exact_surface(run, view.inputs, cast, hit_mm, layers),
         }
-        if let Some(Occlusion { asked, hemispheres }) = &self.occlusion {
-            let volume = self.view.volume;
-            let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
-            let scale = covector_scale(volume);
-            let leaving = Leaving {
-                hemispheres,
-                t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
-            };
-            ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)?;
+    }
+
+    fn find_normals(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
+        if !layers.has(Layer::Normal) {
+            return Ok(());
         }
+        surface_normal(run, self.view.inputs, self.view.gradient, hit_mm, layers)
+    }
+
+    /// Finds the normals of the rays' hits and what is occluded of them, where those are needed and can be known, and shades
+    /// them; a whole picture whose occlusion is estimated from itself is shaded when that is known.
+    fn show(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        self.find_normals(run, planes)?;
+        let waits = self.screen().is_some() && matches!(run.rays, RaySource::Camera { .. });
+        if waits {
+            return Ok(());
+        }
+        self.light_hits(run, planes)
+    }
+
+    /// Shades the hits by what rays tell of their occlusion, where those do.
+    fn light_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let Some(FoundBy::Rays { asked, directions }) = &self.occlusion else {
+            return self.shade(run, false, planes);
+        };
+        self.occlude(run, *asked, directions, planes)?;
+        self.shade(run, true, planes)
+    }
+
+    /// Finds what is occluded of the hits by rays that leave them.
+    fn occlude(
+        &self,
+        run: &mut Run,
+        asked: AmbientOcclusion,
+        directions: &RaySets,
+        planes: &mut Planes,
+    ) -> Result<()> {
+        let Planes {
+            hit_mm: Some(hit_mm),
+            layers,
+            ..
+        } = planes
+        else {
+            return Ok(());
+        };
+        let volume = self.view.volume;
+        let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
+        let scale = covector_scale(volume);
+        let leaving = Leaving {
+            directions,
+            t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
+        };
+        ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)
+    }
+
+    /// Finds what reaches the hits of each light, where shadows are cast.
+    fn cast_shadows(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
+        let (
+            Some(directions),
+            Planes {
+                hit_mm: Some(hit_mm),
+                layers,
+                lights_reached: Some(lights_reached),
+                ..
+            },
+        ) = (&self.shadows, planes)
+        else {
+            return Ok(());
+        };
+        let volume = self.view.volume;
+        let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
+        let toward = TowardLights {
+            shading: &self.light,
+            directions,
+            t_min: (start_mm * covector_scale(volume)) as f32,
+        };
+        let inputs = self.view.inputs;
+        cast_shadows(
+            run,
+            inputs,
+            &self.cast,
+            toward,
+            hit_mm,
+            layers,
+            lights_reached,
+        )
+    }
+
+    /// Shades the hits, by what reaches them of each light and, as far as their occlusion `is_known`, by that too.
+    fn shade(&self, run: &mut Run, is_known: bool, planes: &mut Planes) -> Result<()> {
+        self.cast_shadows(run, planes)?;
+        let Planes {
+            hit_mm,
+            layers,
+            lights_reached,
+            color,
+            ..
+        } = planes;
+        let asked = self.view.scene.ambient_occlusion.filter(|_| is_known);
         let lit = Lit {
             shading: &self.light,
-            hit_mm: self.is_shaded.then_some(&*hit_mm),
-            occlusion: (self.occlusion.as_ref())
-                .map(|occlusion| occlusion.asked.strength.get() as f32),
+            hit_mm: hit_mm.as_ref().filter(|_| self.is_shaded),
+            lights_reached: lights_reached.as_ref(),
+            occlusion: asked.map(|asked| asked.strength().get() as f32),
         };
         shade_surface(run, lit, layers, color)
     }

@@ -1,10 +1,11 @@
 //! The classes of nodes and the bits of cells, on the device.
 
 use crate::error::Result;
+use crate::frame::{Layer, Wanted};
 use crate::gpu::{Buffer, Device};
 use crate::octree::Octree;
 use crate::render::abi::Class;
-use crate::scene::{Filter, Refill, Sampling, Scene, Sparse, Traverse};
+use crate::scene::{Filter, Refill, Sampling, Scene, ShadowMethod, Shadows, Sparse, Traverse};
 use crate::volume::Volume;
 
 use super::criterion::Criterion;
@@ -35,16 +36,20 @@ impl OccupancyTables {
     }
 
     /// What a scene asks for: its casts, and what does by cells whatever those do: where pixels are left out or have many rays
-    /// the tests of what they may show, of a medium by the light of leaves too, and rays that leave a surface.
-    pub fn of_scene(scene: &Scene) -> Self {
+    /// the tests of what they may show, of a medium by the light of leaves too, and rays that leave a point.
+    pub fn of_scene(scene: &Scene, wanted: Wanted) -> Self {
         let is_certified = |sparse: Sparse| sparse.refill == Refill::Certified;
         let certified = scene.sparse.is_some_and(is_certified);
         let of_casts = Self::of(&scene.sampling);
-        let by_cells =
-            certified || scene.anti_aliasing.is_adaptive() || scene.ambient_occlusion.is_some();
+        let leaves = scene.ambient_occlusion.is_some()
+            || scene.shadows.is_some()
+            || wanted.has(Layer::Thick);
+        let by_cells = certified || scene.anti_aliasing.is_adaptive() || leaves;
+        let is_cached = |shadows: Shadows| matches!(shadows.method, ShadowMethod::Cached(_));
+        let caches = scene.shadows.is_some_and(is_cached);
         Self {
             with_cells: of_casts.with_cells || by_cells,
-            with_light: certified,
+            with_light: certified || caches,
             ..of_casts
         }
     }

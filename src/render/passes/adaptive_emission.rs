@@ -14,7 +14,7 @@ pub fn adaptive_emission(
     color: &mut Buffer<[f32; 4]>,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
-    let defines = inputs.defines(run, layers);
+    let defines = inputs.defines(run, layers).with("JITTERED", 0);
     let args = inputs.args(run, color, layers);
     run.cast("adaptive_emission", defines, args)
 }

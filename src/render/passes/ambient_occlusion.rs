@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::SurfaceCast;
-use crate::render::resources::{DeviceGradient, DeviceLayers, Hemispheres};
+use crate::render::resources::{DeviceGradient, DeviceLayers, RaySets};
 
 use super::inputs::CastInputs;
 use super::run::Run;
@@ -13,7 +13,7 @@ use super::run::Run;
 #[derive(Clone, Copy)]
 pub struct Leaving<'a> {
     /// Their directions.
-    pub hemispheres: &'a Hemispheres,
+    pub directions: &'a RaySets,
     /// How far from the surface they begin and end, in the units of [`covector_scale`](crate::render::abi::covector_scale):
     /// mm times that.
     pub t: [f32; 2],
@@ -32,7 +32,7 @@ pub fn ambient_occlusion(
     let args = inputs
         .along_rays(inputs.by_cells(run), run, DeviceGradient::NONE)
         .value("cast", cast)
-        .with(leaving.hemispheres)
+        .with(leaving.directions)
         .value("t_min", &leaving.t[0])
         .value("t_max", &leaving.t[1])
         .read("hit_mm", hit_mm)

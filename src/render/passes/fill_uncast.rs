@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::{Filling, KernelEnum};
-use crate::render::resources::DeviceLayers;
+use crate::render::resources::{DeviceLayers, Spans};
 use crate::scene::Emission;
 
 use super::run::Run;
@@ -20,12 +20,23 @@ pub struct Fill {
     pub with_normals: bool,
 }
 
-/// Fills the pixels that were not cast: the colour, where it is given, and the layers.
+/// The layers of what a ray meets that are filled as means.
+const OF_POINTS: [Layer; 6] = [
+    Layer::Kind,
+    Layer::Depth,
+    Layer::Value,
+    Layer::Occlusion,
+    Layer::Visibility,
+    Layer::Thick,
+];
+
+/// Fills the pixels that were not cast: the colour and the spans, where they are given, and the layers.
 pub fn fill_uncast(
     run: &mut Run,
     fill: Fill,
     cast: &Buffer<u32>,
     color: Option<&mut Buffer<[f32; 4]>>,
+    spans: Option<&mut Spans>,
     layers: &mut DeviceLayers,
 ) -> Result<()> {
     let with_normals = fill.with_normals && layers.has(Layer::Normal);
@@ -39,6 +50,9 @@ pub fn fill_uncast(
         .with("WITH_DEPTH", has(Layer::Depth))
         .with("WITH_VALUE", has(Layer::Value))
         .with("WITH_OCCLUSION", has(Layer::Occlusion))
+        .with("WITH_VISIBILITY", has(Layer::Visibility))
+        .with("WITH_THICK", has(Layer::Thick))
+        .with("WITH_SPANS", u32::from(spans.is_some()))
         .with("WITH_NORMAL", u32::from(with_normals))
         .with("COUNTERS", has(Layer::Steps))
         .with("CERTIFICATE", has(Layer::Certificate));
@@ -48,7 +62,8 @@ pub fn fill_uncast(
         .value("opaque_from", &Emission::LAYERS_FROM)
         .read("cast", cast)
         .read_some("color", color.as_deref())
-        .with(layers.writing(&[Layer::Kind, Layer::Depth, Layer::Value, Layer::Occlusion]))
+        .with(layers.writing(&OF_POINTS))
+        .read_some("spans", spans.as_ref().map(|spans| &spans.depths))
         .with(layers.writing(normals))
         .with(layers.writing(&[Layer::Steps, Layer::Nodes, Layer::Certificate]));
     run.screen("fill_uncast", defines, args)

@@ -63,8 +63,12 @@ impl CastInputs<'_> {
 
     /// Adds the rays and where they see the volume; `gradient` where normals are made use of.
     pub fn along_rays(&self, args: Args, run: &Run, gradient: DeviceGradient) -> Args {
-        args.with(self.clip)
-            .with(gradient)
+        self.seen_along_rays(args.with(self.clip), run, gradient)
+    }
+
+    /// The same behind the clip planes.
+    pub fn seen_along_rays(&self, args: Args, run: &Run, gradient: DeviceGradient) -> Args {
+        args.with(gradient)
             .value("volume", &self.volume.grid)
             .with(&run.rays)
     }

@@ -15,6 +15,8 @@ pub struct Lit<'a> {
     pub shading: &'a Shading,
     /// Where it reflects them, by the normals there; `None`: it shows its colour.
     pub hit_mm: Option<&'a Buffer<f32>>,
+    /// What reaches the hits of each light; `None`: all of it.
+    pub lights_reached: Option<&'a Buffer<[f32; 4]>>,
     /// How strongly the occlusion of light from everywhere shows, 0 to 1; `None`: it is not known.
     pub occlusion: Option<f32>,
 }
@@ -28,10 +30,12 @@ pub fn shade_surface(
 ) -> Result<()> {
     let is_shaded = lit.hit_mm.is_some();
     let strength = lit.occlusion.filter(|_| is_shaded);
+    let lights_reached = lit.lights_reached.filter(|_| is_shaded);
     let defines = run
         .defines()
         .with("SHADED", u32::from(is_shaded))
-        .with("OCCLUSION", u32::from(strength.is_some()));
+        .with("OCCLUSION", u32::from(strength.is_some()))
+        .with("VISIBILITY", u32::from(lights_reached.is_some()));
     let normal: &[Layer] = if is_shaded { &[Layer::Normal] } else { &[] };
     let args = Args::new()
         .with(&run.rays)
@@ -45,5 +49,6 @@ pub fn shade_surface(
             .with(layers.reading(&[Layer::Occlusion])),
         None => args,
     };
+    let args = args.read_some("lights_reached", lights_reached);
     run.cast("shade_surface", defines, args.write("color", color))
 }

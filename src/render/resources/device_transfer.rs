@@ -29,6 +29,16 @@ impl Tables {
             smooth,
         }
     }
+
+    /// The same with the integrals over the knots, where a pass reads those too.
+    #[must_use]
+    pub fn with_sums_if(self, read: bool, with_values: bool) -> Self {
+        Self {
+            sums: self.sums || read,
+            value_sums: self.value_sums || read && with_values,
+            ..self
+        }
+    }
 }
 
 /// A transfer function on the device, knots ascending in stored units.
@@ -74,11 +84,27 @@ impl DeviceTransfer {
         })
     }
 
+    /// The knots and the sums over them alone, for a pass that averages no layers.
+    pub fn integrals(&self) -> impl Group + '_ {
+        Integrals(self)
+    }
+
     /// Device memory held, in bytes.
     pub fn bytes(&self) -> u64 {
         let sums = self.sums.as_ref().map_or(0, |sums| sums.bytes());
         let value_sums = self.value_sums.as_ref().map_or(0, |sums| sums.bytes());
         self.values.bytes() + self.colors.bytes() + sums + value_sums
+    }
+}
+
+/// The knots and the sums over them.
+struct Integrals<'a>(&'a DeviceTransfer);
+
+impl Group for Integrals<'_> {
+    fn add_to(self, args: Args) -> Args {
+        args.read("knot_values", &self.0.values)
+            .read("knot_colors", &self.0.colors)
+            .read_some("knot_sums", self.0.sums.as_ref())
     }
 }
 

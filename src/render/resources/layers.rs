@@ -89,6 +89,14 @@ impl DeviceLayers {
         }
     }
 
+    /// The plane of a layer of numbers.
+    pub fn layer_scalars(&self, layer: Layer) -> Option<&Buffer<f32>> {
+        match &self.0[layer as usize] {
+            Some(DevicePlane::Scalars(buffer)) => Some(buffer),
+            _ => None,
+        }
+    }
+
     /// The planes of those of the layers that are there, in this order, as arguments of a pass that reads
     /// them.
     pub fn reading<'a>(&'a self, layers: &'a [Layer]) -> impl Group + 'a {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use angioray::frame::{
     CERTIFICATE, COC, COVERAGE, DEPTH, Encoding, Format, Frame, KIND, Layer, NODES, NORMAL,
-    OCCLUSION, STEPS, VALUE, channels, write,
+    OCCLUSION, STEPS, THICK, VALUE, VISIBILITY, channels, write,
 };
 
 use super::{METADATA, all_layers, picture};
@@ -45,6 +45,8 @@ fn plane(frame: &Frame, name: &str) -> Vec<f32> {
         "certificate.V" => count(CERTIFICATE),
         "coverage.V" => frame.plane(COVERAGE).unwrap().to_vec(),
         "occlusion.V" => frame.plane(OCCLUSION).unwrap().to_vec(),
+        "visibility.V" => frame.plane(VISIBILITY).unwrap().to_vec(),
+        "thick.V" => frame.plane(THICK).unwrap().to_vec(),
         "coc.V" => frame.plane(COC).unwrap().to_vec(),
         "cast.V" => vec![1.0; frame.size.pixels()],
         other => panic!("no channel {other}"),
@@ -79,7 +81,7 @@ fn exr_holds_every_layer_exactly() {
     let mut names = channels(&all_layers(Format::Exr));
     names.sort();
     assert_eq!(read.keys().cloned().collect::<Vec<_>>(), names);
-    assert_eq!(names.len(), 17);
+    assert_eq!(names.len(), 19);
     for (name, samples) in &read {
         let bits = |s: &[f32]| s.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(samples), bits(&plane(&frame, name)), "{name}");
@@ -123,9 +125,9 @@ fn npy_has_numpys_header_and_the_channels_last() {
     write(&path, &frame, &encoding, &METADATA).unwrap();
     let bytes = fs::read(&path).unwrap();
 
-    // As numpy 2.4 writes np.zeros((3, 5, 17), '<f4').
+    // As numpy 2.4 writes np.zeros((3, 5, 19), '<f4').
     let mut expected = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 17), }");
+    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 19), }");
     expected.resize(127, b' ');
     expected.push(b'\n');
     assert_eq!(bytes[..128], expected);
@@ -135,7 +137,7 @@ fn npy_has_numpys_header_and_the_channels_last() {
         .chunks_exact(4)
         .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
         .collect();
-    assert_eq!(values.len(), 3 * 5 * 17);
+    assert_eq!(values.len(), 3 * 5 * 19);
     for (channel, name) in names.iter().enumerate() {
         let samples: Vec<_> = values
             .iter()
@@ -170,6 +172,8 @@ fn channel_names_keep_one_order() {
             "certificate.V",
             "coverage.V",
             "occlusion.V",
+            "visibility.V",
+            "thick.V",
             "coc.V"
         ]
     );

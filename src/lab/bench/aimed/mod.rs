@@ -285,6 +285,7 @@ fn scene_of(target: &Target) -> Result<Scene> {
         sampling: Sampling::default(),
         lights: vec![Light::default()],
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),

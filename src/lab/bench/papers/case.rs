@@ -51,10 +51,12 @@ impl Case {
     }
 
     /// The scene as the reference renders it: what is seen, without how rays are followed and through which
-    /// pixels.
+    /// pixels; and without what dims and blurs a surface, of which hits alone are compared.
     pub(super) fn reference_scene(&self) -> Scene {
         let mut scene = self.scene.clone();
         scene.sparse = None;
+        scene.ambient_occlusion = None;
+        scene.depth_of_field = None;
         scene.sampling = Sampling {
             filter: scene.sampling.filter,
             ..Sampling::default()

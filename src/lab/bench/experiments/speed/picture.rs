@@ -148,6 +148,7 @@ pub fn scene(
         sampling,
         lights: vec![Light::default()],
         ambient_occlusion: None,
+        shadows: None,
         depth_of_field: None,
         gradient: Default::default(),
         anti_aliasing: Default::default(),

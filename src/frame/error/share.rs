@@ -1,4 +1,4 @@
-//! The error of what a surface keeps from its hits.
+//! The error of a share of light: of what a surface keeps from its hits, and of what reaches them of a light.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,12 +6,11 @@ use crate::error::Result;
 
 use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite};
-use crate::frame::{Frame, OCCLUSION};
+use crate::frame::{Frame, Key};
 
-/// Differences of the occlusion plane over pixels that both cover (colour's alpha > 0). Occlusion is a share of the light
-/// from everywhere, from 0 to 1.
+/// Differences of a plane of shares, from 0 to 1, over pixels that both cover (colour's alpha > 0).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct OcclusionError {
+pub struct ShareError {
     /// Pixels that both cover.
     pub compared: u64,
     /// The mean absolute difference; `None` if no pixel was compared.
@@ -20,28 +19,29 @@ pub struct OcclusionError {
     pub p99: Option<f64>,
     /// The largest absolute difference; `None` if no pixel was compared.
     pub max: Option<f64>,
-    /// The mean difference: above 0 the picture is too dark; `None` if no pixel was compared.
+    /// The mean difference: above 0 where the shares are too large; `None` if no pixel was compared.
     pub bias: Option<f64>,
 }
 
-/// Compares the occlusion planes.
+/// Compares two planes of shares, of what one key names.
 ///
 /// # Errors
-/// Different sizes, a missing occlusion plane, an occlusion that is not finite.
-pub fn occlusion_error(reference: &Frame, frame: &Frame) -> Result<OcclusionError> {
+/// Different sizes, a missing plane, a share that is not finite.
+pub fn share_error(reference: &Frame, frame: &Frame, key: Key<f32>) -> Result<ShareError> {
+    let name = key.layer().name();
     let size = comparable(reference, frame)?;
-    let (left, right) = both(reference, frame, "occlusion", |f| f.plane(OCCLUSION))?;
+    let (left, right) = both(reference, frame, name, |f| f.plane(key))?;
     let covers = |frame: &Frame, pixel: usize| frame.color[pixel][3] > 0.0;
     let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
         Entry::of(covers(reference, pixel), covers(frame, pixel), || {
-            finite(f64::from(b) - f64::from(a), "occlusion", size, pixel)
+            finite(f64::from(b) - f64::from(a), name, size, pixel)
         })
     };
     let entries: Vec<Entry> =
         (left.iter().zip(right).enumerate().map(entry)).collect::<Result<_>>()?;
     let tally = Tally::of(&entries);
     let sum: f64 = entries.iter().filter_map(|entry| entry.difference()).sum();
-    Ok(OcclusionError {
+    Ok(ShareError {
         compared: tally.compared,
         mean: tally.spread.map(|s| s.mean),
         p99: tally.spread.map(|s| s.p99),

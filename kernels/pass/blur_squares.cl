@@ -7,14 +7,14 @@
 #error "a row of a square is read as eight numbers"
 #endif
 
-static inline float min_of_eight(float8 a)
+static inline float least_of_row(float8 a)
 {
     float4 four = a.lo < a.hi ? a.lo : a.hi;
     float2 two = four.lo < four.hi ? four.lo : four.hi;
     return two.x < two.y ? two.x : two.y;
 }
 
-static inline float max_of_eight(float8 a) { return -min_of_eight(-a); }
+static inline float greatest_of_row(float8 a) { return -least_of_row(-a); }
 
 static inline bool any_of_eight(int8 mask)
 {
@@ -39,8 +39,8 @@ static inline void add_pixels(BlurredSquare *square, RayGrid rays, int i, int j,
             farthest = seen && diameter > farthest ? diameter : farthest;
             unseen |= !seen;
         }
-        square->nearest = min_of_eight(nearest);
-        square->farthest = max_of_eight(farthest);
+        square->nearest = least_of_row(nearest);
+        square->farthest = greatest_of_row(farthest);
         square->uneven = square->uneven || any_of_eight(unseen);
         return;
     }

@@ -80,7 +80,7 @@ impl SampleCount {
         let a_side = self.0 / 2;
         let is_one =
             |sections: &u32| a_side.is_multiple_of(*sections) && 4 * sections * sections <= a_side;
-        (1..=a_side).filter(is_one).last().unwrap_or(1)
+        (1..=a_side).rev().find(is_one).unwrap_or(1)
     }
 
     /// The number of pixels on either side of a section.

@@ -7,7 +7,7 @@
 // px: the distance of neighbouring rays across the view axis, mm, at the base plane and its growth per mm. turns: of each
 // pixel of the square the cosines and sines of its sections' angles.
 //
-// Reads the voxels, spans, hit_mm and kind. Writes estimate at hits on the surface.
+// Reads the voxels, spans, hit_mm and kind. Writes estimate where something was met, 0 on caps.
 #include "lib/find/surface_point.clh"
 #include "lib/light/section.clh"
 #include "lib/ray/camera.clh"
@@ -77,9 +77,10 @@ static inline Ints hidden_sectors(const Surroundings *around, Section section, f
         seen = seen & span.y > span.x & y > LEAST_SLOPE * fabs(x);
         if (!ANY(seen))
             continue;
-        // Its direction per mm along the view axis, and the part of it within the sphere.
+        // Its direction per mm along the view axis; whether it ends above the tangent plane; and the part of it within the sphere.
         Floats dx = fma(FLOATS(around->px.y), tau, ray_tau);
         Floats dy = fma(FLOATS(around->px.y), nu, section.ray_nu);
+        Mask hangs = fma(span.y - span.x, dy, y) > 0.0f;
         Floats a = 1.0f / fma(dx, dx, dy * dy);
         Floats b = fma(x, dx, y * dy) * a;
         Floats c = fma(x, x, fma(y, y, FLOATS(-around->radius_mm * around->radius_mm))) * a;
@@ -93,7 +94,7 @@ static inline Ints hidden_sectors(const Surroundings *around, Section section, f
         x = fma(from, dx, x);
         y = fma(from, dy, y);
         // What ends above the tangent plane is taken to go on half way to the pixels looked at beside it.
-        Floats half_mm = far_y > 0.0f ? 0.5f * mm : FLOATS(0.0f);
+        Floats half_mm = hangs ? 0.5f * mm : FLOATS(0.0f);
         x = fma(before - at, half_mm, x);
         far_x = fma(next - at, half_mm, far_x);
         Ints bits = sectors_between(x, y, far_x, far_y, side, around->sector_shift);
@@ -108,8 +109,9 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
                              const global float2 *spans, global float *estimate)
 {
     Pixels pixels = tile_pixels(rays);
-    Mask hit = pixels.inside & read_ints(kind, pixels) == KIND_SURFACE;
-    Floats occluded = FLOATS(0.0f); // of caps and where nothing is hit too
+    Ints met = read_ints(kind, pixels);
+    Mask hit = pixels.inside & met == KIND_SURFACE;
+    Floats occluded = FLOATS(0.0f);
     if (ANY(hit)) {
         Ray ray = camera_ray(rays, pixels);
         SurfacePoint point = surface_point(voxels, volume, ray, read_floats(hit_mm, pixels), iso, 1u, hit);
@@ -141,5 +143,6 @@ kernel void screen_occlusion(VOXELS voxels, VolumeGrid volume, RayGrid rays, flo
         }
         occluded = min_of(occluded / (float)sections, FLOATS(1.0f));
     }
-    SCATTER(pixels.inside, estimate, pixels.index, occluded);
+    // On caps too: what is smoothed beside them reads it.
+    SCATTER(pixels.inside & met != KIND_NOTHING, estimate, pixels.index, hit ? occluded : FLOATS(0.0f));
 }

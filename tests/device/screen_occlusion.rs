@@ -55,13 +55,7 @@ fn wrong(device: &Device) -> Vec<String> {
             "{}, {ssao}: {found:.4}, not {:.4}",
             case.name, case.accessibility
         );
-        // Within hardly more than the way to a wall little of it counts, and that is seen at a slant.
-        let limit = if case.name.starts_with("inside edge, 8") {
-            0.06
-        } else {
-            0.05
-        };
-        if (found - case.accessibility).abs() > limit {
+        if (found - case.accessibility).abs() > 0.05 {
             wrong.push(format!(
                 "{}: {found}, not {}",
                 case.name, case.accessibility

@@ -4,10 +4,10 @@
 //
 // An interpolated pixel's kind is that of the corner nearest to it; where it met something, its depth, value,
 // occlusion, visibility, thickness, span and normal are means of the corners that did. Where there is no kind, what a corner met
-// shows in its depth, and what a pixel meets in its opacity.
+// shows in its depth, and what a pixel meets in its opacity. Of its occlusion nothing is proven.
 //
 // Reads cast; reads and writes color (COLOR) and the layers that there are (KIND, DEPTH, VALUE,
-// OCCLUSION, VISIBILITY, THICK, NORMAL, COUNTERS, CERTIFICATE) and spans.
+// OCCLUSION, OCCLUSION_BOUND, VISIBILITY, THICK, NORMAL, COUNTERS, CERTIFICATE) and spans.
 #include "lib/ray/blocks.clh"
 #include "lib/ray/planes.clh"
 
@@ -35,6 +35,11 @@
 #define OCCLUSION_PLANE , global float *occlusion
 #else
 #define OCCLUSION_PLANE
+#endif
+#if WITH_OCCLUSION_BOUND
+#define BOUND_PLANE , global float *occlusion_bound
+#else
+#define BOUND_PLANE
 #endif
 #if WITH_VISIBILITY
 #define VISIBILITY_PLANE , global float *visibility
@@ -68,7 +73,7 @@
 #endif
 
 kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const global uint *cast COLOR_PLANE KIND_PLANE DEPTH_PLANE
-                        VALUE_PLANE OCCLUSION_PLANE VISIBILITY_PLANE THICK_PLANE SPAN_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
+                        VALUE_PLANE OCCLUSION_PLANE BOUND_PLANE VISIBILITY_PLANE THICK_PLANE SPAN_PLANE NORMAL_PLANE COUNTER_PLANES CERTIFICATE_PLANE)
 {
     Pixels pixels = tile_pixels(rays);
     Ints mark = read_ints(cast, pixels);
@@ -148,6 +153,9 @@ kernel void fill_uncast(RayGrid rays, uint spacing, float opaque_from, const glo
     kept = meets ? mean_of(occlusion, corners.place, weight) : kept;
 #endif
     SCATTER(pixels.inside, occlusion, pixels.index, kept);
+#endif
+#if WITH_OCCLUSION_BOUND
+    SCATTER(pixels.inside, occlusion_bound, pixels.index, meets ? FLOATS(1.0f) : FLOATS(0.0f));
 #endif
 #if WITH_VISIBILITY
     Floats reached = FLOATS(0.0f);

@@ -21,7 +21,7 @@
 #define MIN_PART_PX 1.0f
 
 // Parts of the lens, quarters about its middle.
-#define SECTORS 4
+#define QUARTERS 4
 
 // The discs around the pixels of a tile.
 typedef struct {
@@ -42,9 +42,9 @@ typedef struct {
     uint count;
 } Taps;
 
-// What is covered of each sector of the lens by what lies in each part, and of the lens by what is nearer than the pixel itself.
+// What is covered of each quarter of the lens by what lies in each part, and of the lens by what is nearer than the pixel itself.
 typedef struct {
-    Floats of[SECTORS][BINS];
+    Floats of[QUARTERS][BINS];
     Floats before_own;
 } Covered;
 
@@ -56,11 +56,11 @@ static inline int2 turned(float4 tap, int quarters)
     return quarters == 0 ? across : quarters == 1 ? down : quarters == 2 ? -across : -down;
 }
 
-// The sector of the lens that a disc covers from so many quarters around: what lies before the focal plane is seen through
+// The quarter of the lens that a disc covers from so many quarters around: what lies before the focal plane is seen through
 // the other side.
-static inline int sector_of(const Tile *tile, int quarters, int bin)
+static inline int quarter_of(const Tile *tile, int quarters, int bin)
 {
-    return bin < tile->near_bins ? (quarters + 2) % SECTORS : quarters;
+    return bin < tile->near_bins ? (quarters + 2) % QUARTERS : quarters;
 }
 
 // Where the numbers of the pixels to which a tap leads lie in a plane: of a tile that is clear its first, row by row, else those of
@@ -140,7 +140,7 @@ static inline void add_covered(const Tile *tile, Taps taps, BlurredLayer layer, 
         float4 tap = taps.taps[n];
         if (tap.z >= layer.reach)
             break;
-        for (int quarters = 0; quarters < SECTORS; quarters++) {
+        for (int quarters = 0; quarters < QUARTERS; quarters++) {
             Tapped there = tapped(tile, turned(tap, quarters));
             Floats circle = tapped_floats(tile, layer.circle, there);
             Floats reaches = disc_reach(circle, tap.z);
@@ -150,7 +150,7 @@ static inline void add_covered(const Tile *tile, Taps taps, BlurredLayer layer, 
             Mask nearer = NO_LANE;
             for (int bin = 0; bin < tile->bins; bin++) {
                 Mask before = circle < tile->ends[bin];
-                covered->of[sector_of(tile, quarters, bin)][bin] += before & !nearer ? covers : FLOATS(0.0f);
+                covered->of[quarter_of(tile, quarters, bin)][bin] += before & !nearer ? covers : FLOATS(0.0f);
                 nearer = before;
             }
             covered->before_own += circle < tile->circle ? covers : FLOATS(0.0f);
@@ -168,10 +168,10 @@ static inline Floats covered_by_own(const Tile *tile, Taps taps)
             break;
         covered += tap.w * disc_reach(tile->circle, tap.z);
     }
-    return (float)SECTORS * covered / disc_area(tile->circle);
+    return (float)QUARTERS * covered / disc_area(tile->circle);
 }
 
-// Fills what is left of a sector with what covers it; what of that is seen. What covers nothing is seen where anything is left.
+// Fills what is left of a quarter with what covers it; what of that is seen. What covers nothing is seen where anything is left.
 static inline Floats fill(Floats covers, Floats *left)
 {
     Floats open = *left > 0.0f ? FLOATS(1.0f) : FLOATS(0.0f);
@@ -189,7 +189,7 @@ static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, co
         float4 tap = taps.taps[n];
         if (tap.z >= layer.reach)
             break;
-        for (int quarters = 0; quarters < SECTORS; quarters++) {
+        for (int quarters = 0; quarters < QUARTERS; quarters++) {
             Tapped there = tapped(tile, turned(tap, quarters));
             Floats circle = tapped_floats(tile, layer.circle, there);
             Floats reaches = disc_reach(circle, tap.z);
@@ -197,9 +197,9 @@ static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, co
                 continue;
             Floats gives = tap.w * reaches / disc_area(circle);
             int last = tile->bins - 1;
-            Floats share = shares->of[sector_of(tile, quarters, last)][last];
+            Floats share = shares->of[quarter_of(tile, quarters, last)][last];
             for (int bin = last - 1; bin >= 0; bin--)
-                share = circle < tile->ends[bin] ? shares->of[sector_of(tile, quarters, bin)][bin] : share;
+                share = circle < tile->ends[bin] ? shares->of[quarter_of(tile, quarters, bin)][bin] : share;
             Floats share_in_focus = circle < tile->circle ? shares->before_own : FLOATS(0.0f);
             gives *= tile->focused ? share_in_focus : share;
             Floats4 color = tapped_float4(tile, layer.color, there);
@@ -214,9 +214,9 @@ static inline void add_light(const Tile *tile, Taps taps, BlurredLayer layer, co
 static inline Covered nothing_covered(void)
 {
     Covered covered;
-    for (int sector = 0; sector < SECTORS; sector++)
+    for (int quarter = 0; quarter < QUARTERS; quarter++)
         for (int bin = 0; bin < BINS; bin++)
-            covered.of[sector][bin] = FLOATS(0.0f);
+            covered.of[quarter][bin] = FLOATS(0.0f);
     covered.before_own = FLOATS(0.0f);
     return covered;
 }
@@ -233,13 +233,13 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
     Floats whole = covered_by_own(tile, taps);
     Floats nearer = by_seen.before_own + by_hidden.before_own;
     Mask shows_hidden = tile->focused & by_hidden.before_own > 0.0f;
-    for (int sector = 0; sector < SECTORS; sector++) {
-        Floats left = whole / (float)SECTORS;
+    for (int quarter = 0; quarter < QUARTERS; quarter++) {
+        Floats left = whole / (float)QUARTERS;
         for (int bin = 0; bin < tile->bins; bin++) {
-            Mask covers = by_hidden.of[sector][bin] > 0.0f;
-            by_seen.of[sector][bin] = fill(by_seen.of[sector][bin], &left);
-            by_hidden.of[sector][bin] = fill(by_hidden.of[sector][bin], &left);
-            shows_hidden = shows_hidden | (!tile->focused & covers & by_hidden.of[sector][bin] > 0.0f);
+            Mask covers = by_hidden.of[quarter][bin] > 0.0f;
+            by_seen.of[quarter][bin] = fill(by_seen.of[quarter][bin], &left);
+            by_hidden.of[quarter][bin] = fill(by_hidden.of[quarter][bin], &left);
+            shows_hidden = shows_hidden | (!tile->focused & covers & by_hidden.of[quarter][bin] > 0.0f);
         }
     }
     by_seen.before_own = by_hidden.before_own = nearer > 1.0f ? 1.0f / nearer : FLOATS(1.0f);

@@ -23,12 +23,13 @@ group! {
         output: FilePath,
 
         /// Layers beside the colour, in .exr and .npy: depth, normal, value, steps, nodes, cast, kind,
-        /// certificate, coverage, occlusion, visibility, thick, coc, separated by commas, or all that the mode
-        /// has. In dvr depth, normal and value are means along the ray, weighted as its light is, where the
+        /// certificate, coverage, occlusion, occlusion_bound, visibility, thick, coc, separated by commas, or all
+        /// that the mode has. In dvr depth, normal and value are means along the ray, weighted as its light is, where the
         /// opacity is at least 0.01. cast is 0 where --sparse filled a pixel; coverage is the share of a pixel's
         /// rays that hit. certificate is for iso alone: 0 proven to miss, 1 proven to hit, 2 undecided; fixed
         /// steps on a device prove nothing: 2 everywhere. occlusion is for iso too: the share of the light from
-        /// everywhere that --ao or --ssao finds kept from the hit; and thick: mm behind the hit to the ray's
+        /// everywhere that --ao or --ssao finds kept from the hit; occlusion_bound: how far it may be from the
+        /// truth at most, by --ao bound=E; and thick: mm behind the hit to the ray's
         /// next crossing of the surface, or to where the volume or a clip plane ends it. visibility is the share
         /// of the first light that --shadows let through to the hit, in dvr a mean like depth. coc is for iso
         /// and dvr: the diameter of the circle of confusion of --dof in pixels, above 0 behind the focal plane
@@ -275,7 +276,9 @@ impl Layers {
             Layer::Certificate if mode != Mode::Iso => {
                 Some("only a surface is proven to be hit or missed")
             }
-            Layer::Occlusion if mode != Mode::Iso => Some("only a surface keeps light from itself"),
+            Layer::Occlusion | Layer::OcclusionBound if mode != Mode::Iso => {
+                Some("only a surface keeps light from itself")
+            }
             Layer::Visibility if !mode.is_lit() => Some("a projection has no light"),
             Layer::Thick if mode != Mode::Iso => Some("only a surface has an inside"),
             Layer::Coc if !mode.is_lit() => Some("a projection has no depth to focus on"),

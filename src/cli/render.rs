@@ -5,8 +5,8 @@ use std::time::Instant;
 use crate::VERSION;
 use crate::batch::Provenance;
 use crate::error::Result;
-use crate::frame::{self, Frame, Wanted};
-use crate::lab::measure::{Counts, SamplingCheck};
+use crate::frame::{self, Frame, Layer, Wanted};
+use crate::lab::measure::{BoundReached, Counts, SamplingCheck};
 use crate::lab::tolerance::{Choice, Cost, ToleranceStats};
 use crate::number_text::concise;
 use crate::options::Resolved;
@@ -106,6 +106,10 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
     files.encoding.check_size(resolved.scene.size)?;
 
     let wanted = Wanted::for_encoding(&files.encoding, files.stats.is_some());
+    let wanted = match resolved.scene.occlusion_error() {
+        Some(_) => wanted.with([Layer::Kind, Layer::OcclusionBound]),
+        None => wanted,
+    };
     let prepared = backend.prepare(&loaded.volume, &job.source, bars)?;
     let mut caster = backend.caster(&loaded.volume, &prepared)?;
     let choice = match job.bound {
@@ -147,6 +151,9 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
         rendered.device.name
     ));
     print_certificate(&rendered.frame, &resolved);
+    if let Some(reached) = reached(&drawing, &rendered.frame, &resolved) {
+        message(bound_line(&reached));
+    }
     if let Some(check) = &rendered.sample_check {
         message(check_line(check));
     }
@@ -207,6 +214,32 @@ fn print_certificate(frame: &Frame, resolved: &Resolved) {
     }
 }
 
+/// How near to the truth the occlusion is, where a device bounds it.
+fn reached(drawing: &Drawing<'_>, frame: &Frame, resolved: &Resolved) -> Option<BoundReached> {
+    match drawing.backend {
+        Backend::Reference => None,
+        _ => BoundReached::of(frame, resolved.scene.occlusion_error()?),
+    }
+}
+
+/// How near to the truth bounded occlusion is.
+fn bound_line(reached: &BoundReached) -> String {
+    let BoundReached {
+        asked,
+        hits,
+        beyond,
+        ..
+    } = *reached;
+    let all = format!("occlusion: within {asked} of the truth");
+    if beyond == 0 {
+        return format!("{all} at every hit");
+    }
+    format!(
+        "{all} at all but {beyond} of {hits} hits; within {:.3} there",
+        reached.max
+    )
+}
+
 /// How much adaptive anti-aliasing may differ from the whole of it, as far as is known.
 fn check_line(check: &SampleCheck) -> String {
     if check.pixels == 0 {
@@ -247,6 +280,7 @@ fn write_stats(
         counts: Counts::of(&rendered.frame, &resolved.scene.picture, rays),
         rays_per_round: rendered.rays_per_round,
         sample_check: rendered.sample_check,
+        occlusion_bound: reached(drawing, &rendered.frame, resolved),
         focus_mm: rendered.focus_mm,
         sampling_check: found.check,
         memory: Memory::now(

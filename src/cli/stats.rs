@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::gpu::DeviceInfo;
-use crate::lab::measure::{Counts, SamplingCheck, host_peak_bytes};
+use crate::lab::measure::{BoundReached, Counts, SamplingCheck, host_peak_bytes};
 use crate::lab::tolerance::ToleranceStats;
 use crate::options::SceneOptions;
 use crate::output::write_atomically;
@@ -35,6 +35,9 @@ pub struct Stats<'a> {
     /// How much adaptive anti-aliasing may differ from the whole of it; of a single picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_check: Option<SampleCheck>,
+    /// How far from the truth the occlusion may be, where that is bounded; of a single picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub occlusion_bound: Option<BoundReached>,
     /// How far away the focal plane of the lens is along the view axis, mm; of a single picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub focus_mm: Option<f64>,

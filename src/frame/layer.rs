@@ -102,6 +102,9 @@ layers! {
     Coverage, COVERAGE: f32 = Some(FillValue::Scalar(0.0)), "coverage", ["coverage.V"];
     /// The share of the light from everywhere that a surface keeps from the hit; 0 where nothing is hit or none is asked for.
     Occlusion, OCCLUSION: f32 = Some(FillValue::Scalar(0.0)), "occlusion", ["occlusion.V"];
+    /// How far from the occlusion that is said that of the definition may be, where `--ao bound=E` bounds it; 1 where the occlusion was
+    /// filled from other pixels', 0 where nothing is hit or no bound is asked for.
+    OcclusionBound, OCCLUSION_BOUND: f32 = Some(FillValue::Scalar(0.0)), "occlusion_bound", ["occlusion_bound.V"];
     /// The share of the first light that reaches the hit; of a medium the mean along the ray, weighted as its light is.
     /// 0 where nothing is hit or no shadows are asked for.
     Visibility, VISIBILITY: f32 = Some(FillValue::Scalar(0.0)), "visibility", ["visibility.V"];

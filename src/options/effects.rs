@@ -23,8 +23,14 @@ group! {
     pub struct EffectOptions {
         /// Ambient occlusion: the light from everywhere is dimmed where the surface itself is in its way within
         /// MM; N rays from each hit tell how much, up to 1024 [default of N: 64], and S from 0 to 1 how
-        /// strongly it shows [default of S: 1]
-        #[arg(long, value_name = "rays=N,distance=MM,strength=S", allow_hyphen_values = true)]
+        /// strongly it shows [default of S: 1]. With bound=E in place of rays=N its share is bounded from both
+        /// sides, and what shows is within E of it, from 0.001 to 0.5, where the voxels decide that (layer
+        /// occlusion_bound)
+        #[arg(
+            long,
+            value_name = "rays=N|bound=E,distance=MM,strength=S",
+            allow_hyphen_values = true
+        )]
         ao: AmbientOcclusion,
 
         /// Shadows: lights but headlights are dimmed where the volume itself is in their way. on: by rays from
@@ -91,7 +97,7 @@ impl EffectOptions {
     /// Returns what dims the light from everywhere, and how it is found.
     pub(super) fn occlusion(&self) -> Option<Occlusion> {
         let of_screen = self.ssao.map(Occlusion::Screen);
-        self.ao.map(Occlusion::Rays).or(of_screen)
+        self.ao.map(Occlusion::Volume).or(of_screen)
     }
 
     /// Returns how light is reflected where nothing else is given: where light from everywhere may be occluded there is more

@@ -121,9 +121,10 @@ group! {
         shininess: Shininess,
 
         /// A light, up to 4 times: headlight; fixed to the patient, the direction X,Y,Z toward it in world
-        /// space or point:X,Y,Z, a place in mm, whose light gets no less with the distance; or
-        /// camera:X,Y,Z, the direction toward it right, up and toward the viewer. Behind it there may be a
-        /// colour as that of --color and an intensity, such as headlight@ivory@0.8
+        /// space or point:X,Y,Z, a place in mm, whose light gets no less with the distance; or fixed to the
+        /// camera, camera:X,Y,Z, the direction toward it right, up and toward the viewer, or
+        /// camera-point:X,Y,Z, a place in mm from the eye. Behind it there may be a colour as that of --color
+        /// and an intensity, such as headlight@ivory@0.8
         #[arg(long, value_name = "PLACE[@COLOR][@INTENSITY]", allow_hyphen_values = true)]
         #[serde(deserialize_with = "lights::deserialize", serialize_with = "lights::serialize")]
         light: Vec<Light>,

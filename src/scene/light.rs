@@ -49,6 +49,11 @@ pub enum LightPlace {
         /// Points from the scene toward the light, camera space: right, up, toward the viewer.
         toward_light: Direction,
     },
+    /// `camera-point:x,y,z`: a point, fixed to the camera. Its light does not get less with the distance.
+    CameraPoint {
+        /// Where it is from the eye, camera space: right, up, toward the viewer, mm.
+        at_camera: DVec3,
+    },
     /// `point:x,y,z`: a point, fixed to the patient. Its light does not get less with the distance.
     Point {
         /// Where it is, world space, mm.
@@ -165,6 +170,18 @@ impl Light {
         Ok(Self::white(LightPlace::Point { at_world }))
     }
 
+    /// Constructs a white light at a point that is fixed to the camera, from its eye in camera space: right, up, toward the
+    /// viewer, mm.
+    ///
+    /// # Errors
+    /// Usage: a point that is not finite.
+    pub fn camera_point(at_camera: DVec3) -> Result<Self> {
+        if !at_camera.is_finite() {
+            return Err(Error::usage("a light's point x,y,z must be finite"));
+        }
+        Ok(Self::white(LightPlace::CameraPoint { at_camera }))
+    }
+
     /// Returns what the light gives, linear light: 1 is the white light of intensity 1.
     pub fn linear(self) -> Rgb {
         let Rgb(color) = self.color.linear();
@@ -177,13 +194,19 @@ impl Light {
             LightPlace::Headlight => LightFrom::Eye,
             LightPlace::Distant { toward_light } => LightFrom::Direction(toward_light.unit()),
             LightPlace::Camera { toward_light } => {
-                let DVec3 { x, y, z } = toward_light.unit();
-                let toward = camera.right() * x + camera.up() * y - camera.forward() * z;
-                LightFrom::Direction(toward.normalize())
+                LightFrom::Direction(from_camera(camera, toward_light.unit()).normalize())
+            }
+            LightPlace::CameraPoint { at_camera } => {
+                LightFrom::Point(camera.eye_world() + from_camera(camera, at_camera))
             }
             LightPlace::Point { at_world } => LightFrom::Point(at_world),
         }
     }
+}
+
+/// A vector of camera space (right, up, toward the viewer) in world space.
+fn from_camera(camera: &Camera, DVec3 { x, y, z }: DVec3) -> DVec3 {
+    camera.right() * x + camera.up() * y - camera.forward() * z
 }
 
 impl Default for Light {
@@ -199,8 +222,8 @@ impl FromStr for LightPlace {
         let wrong = || {
             Error::usage(format!(
                 "'{text}' is no place of a light: write headlight, the direction x,y,z toward it, \
-                 camera:x,y,z for one fixed to the camera (right, up, toward the viewer), or \
-                 point:x,y,z for a point in mm"
+                 camera:x,y,z for one fixed to the camera (right, up, toward the viewer), \
+                 point:x,y,z for a point in mm, or camera-point:x,y,z for one in mm from the eye"
             ))
         };
         let three = |text: &str| numbers(text).map(DVec3::from_array).ok_or_else(wrong);
@@ -222,6 +245,11 @@ impl FromStr for LightPlace {
             Some((fixed, vector)) if fixed.eq_ignore_ascii_case("camera") => Ok(Self::Camera {
                 toward_light: direction(vector)?,
             }),
+            Some((fixed, point)) if fixed.eq_ignore_ascii_case("camera-point") => {
+                Ok(Self::CameraPoint {
+                    at_camera: three(point)?,
+                })
+            }
             Some((fixed, point)) if fixed.eq_ignore_ascii_case("point") => Ok(Self::Point {
                 at_world: three(point)?,
             }),
@@ -236,6 +264,7 @@ impl fmt::Display for LightPlace {
             Self::Headlight => return f.write_str("headlight"),
             Self::Distant { toward_light } => ("", toward_light.0),
             Self::Camera { toward_light } => ("camera:", toward_light.0),
+            Self::CameraPoint { at_camera } => ("camera-point:", *at_camera),
             Self::Point { at_world } => ("point:", *at_world),
         };
         write!(f, "{fixed}{x},{y},{z}")
@@ -293,6 +322,7 @@ mod tests {
             "headlight@0.8",
             "point:1,2,3@1,0.5,0.25",
             "camera:0,0,1@1,0.5,0.25@2",
+            "camera-point:-80,0.5,-20@0.5",
         ] {
             let light: Light = text.parse().unwrap();
             assert_eq!(light.to_string().parse::<Light>().unwrap(), light, "{text}");
@@ -314,6 +344,7 @@ mod tests {
         for (text, says) in [
             ("moon", "'moon' is no place of a light"),
             ("point:1,2", "no place of a light"),
+            ("camera-point:1,2", "no place of a light"),
             ("sun:1,2,3", "no place of a light"),
             ("0,0,0", "a light at 0,0,0 has no direction"),
             ("camera:0,0,0", "a light at 0,0,0 has no direction"),
@@ -349,6 +380,14 @@ mod tests {
             viewer.shines_from(&side),
             LightFrom::Direction(-side.forward())
         );
+        let lamp = Light::camera_point(DVec3::new(2.0, 3.0, -4.0)).unwrap();
+        for camera in [front, side] {
+            let at = camera.eye_world() + 2.0 * camera.right() + 3.0 * camera.up();
+            let LightFrom::Point(found) = lamp.shines_from(&camera) else {
+                panic!("a point");
+            };
+            assert!(found.distance(at + 4.0 * camera.forward()) < 1e-12);
+        }
         let patient = Light::distant(DVec3::X * 3.0).unwrap();
         assert_eq!(patient.shines_from(&front), patient.shines_from(&side));
     }

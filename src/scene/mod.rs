@@ -44,15 +44,15 @@ pub use homogeneity::{Homogeneity, HomogeneityRule};
 pub use jitter::{Interleaved, Jitter, Shift};
 pub use light::{Direction, Light, LightFrom, LightPlace};
 pub use mode::Mode;
-pub use occlusion::AmbientOcclusion;
+pub use occlusion::{AmbientOcclusion, OcclusionBy};
 pub use path::{FrameCount, Orbit, OrbitAxis};
 pub use phong::{MostReflected, Phong, Reflection};
 pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
     Brightness, Contrast, DistanceMm, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity,
-    LightSizeDeg, RayCount, Reflectance, ScreenError, ShadedFrom, ShadowStep, Share, Shininess,
-    StepVoxels, Termination,
+    LightSizeDeg, OcclusionError, RayCount, Reflectance, ScreenError, ShadedFrom, ShadowStep,
+    Share, Shininess, StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
@@ -139,6 +139,14 @@ impl Scene {
         match &self.picture {
             Picture::Emission(medium) => medium.quadrature.sampling(),
             Picture::Surface { .. } | Picture::Projection { .. } => self.sampling.method,
+        }
+    }
+
+    /// Within what ambient occlusion is bounded, where a device is to bound it.
+    pub fn occlusion_error(&self) -> Option<OcclusionError> {
+        match self.ambient_occlusion?.in_volume()?.by {
+            OcclusionBy::Bound(error) => Some(error),
+            OcclusionBy::Rays(_) => None,
         }
     }
 }

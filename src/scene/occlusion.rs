@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::keyed_text::KeyedText;
-use super::quantities::{DistanceMm, RayCount, Share};
+use super::quantities::{DistanceMm, OcclusionError, RayCount, Share};
 use crate::error::{Error, Result};
 
 /// Ambient occlusion of a surface (`--ao`).
@@ -15,20 +15,32 @@ use crate::error::{Error, Result};
 /// surface is seen; of a cap it is the face's. Zhukov, Iones and Kronin 1998 (obscurances), with V alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AmbientOcclusion {
-    /// The number of rays from each point by which a device estimates the accessibility.
-    pub rays: RayCount,
+    /// How a device finds the accessibility.
+    pub by: OcclusionBy,
     /// How far from a point the surface may lie that occludes it.
     pub distance: DistanceMm,
     /// The share of the occlusion that is shown.
     pub strength: Share,
 }
 
-impl AmbientOcclusion {
-    /// The number of rays where none is given.
-    pub const DEFAULT_RAYS: RayCount = RayCount::of(64);
+/// How a device finds how accessible points are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OcclusionBy {
+    /// An estimate by so many rays from each point.
+    Rays(RayCount),
+    /// Bounds from both sides that hold the accessibility between them: the middle between them is no farther from it than this
+    /// where the volume is fine enough to decide that.
+    Bound(OcclusionError),
+}
 
-    const FORM: &'static str =
-        "rays=N,distance=MM,strength=S, of which rays and strength may be left out";
+impl Default for OcclusionBy {
+    fn default() -> Self {
+        Self::Rays(RayCount::of(64))
+    }
+}
+
+impl AmbientOcclusion {
+    const FORM: &'static str = "rays=N,distance=MM,strength=S or bound=E,distance=MM,strength=S, of which only distance is needed";
 }
 
 impl FromStr for AmbientOcclusion {
@@ -36,12 +48,18 @@ impl FromStr for AmbientOcclusion {
 
     fn from_str(text: &str) -> Result<Self> {
         let mut keys = KeyedText::read(text, "ambient occlusion", Self::FORM)?;
-        let rays: Option<RayCount> = keys.take("rays")?;
+        let rays = keys.take("rays")?.map(OcclusionBy::Rays);
+        let bound = keys.take("bound")?.map(OcclusionBy::Bound);
+        if rays.is_some() && bound.is_some() {
+            return Err(Error::usage(format!(
+                "ambient occlusion '{text}': 'rays' and 'bound' are two ways to find the same; give one of them"
+            )));
+        }
         let strength: Option<Share> = keys.take("strength")?;
         let distance = keys.need("distance")?;
         keys.end()?;
         Ok(Self {
-            rays: rays.unwrap_or(Self::DEFAULT_RAYS),
+            by: rays.or(bound).unwrap_or_default(),
             distance,
             strength: strength.unwrap_or_default(),
         })
@@ -51,11 +69,15 @@ impl FromStr for AmbientOcclusion {
 impl fmt::Display for AmbientOcclusion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            rays,
+            by,
             distance,
             strength,
         } = self;
-        write!(f, "rays={rays},distance={distance},strength={strength}")
+        match by {
+            OcclusionBy::Rays(rays) => write!(f, "rays={rays},")?,
+            OcclusionBy::Bound(error) => write!(f, "bound={error},")?,
+        }
+        write!(f, "distance={distance},strength={strength}")
     }
 }
 
@@ -68,6 +90,7 @@ mod tests {
         for text in [
             "rays=16,distance=5,strength=1",
             "rays=1,distance=0.25,strength=0.5",
+            "bound=0.05,distance=5,strength=1",
         ] {
             assert_eq!(text.parse::<AmbientOcclusion>().unwrap().to_string(), text);
         }
@@ -90,6 +113,14 @@ mod tests {
                 "'1.5' is not a number of rays: write a whole number from 1 to 1024",
             ),
             ("distance=1,rays=0", "'0' is not a number of rays"),
+            (
+                "distance=1,bound=0",
+                "a bound of occlusion of 0 is out of its domain",
+            ),
+            (
+                "distance=1,bound=0.1,rays=4",
+                "'rays' and 'bound' are two ways to find the same; give one of them",
+            ),
         ] {
             let refused = wrong.parse::<AmbientOcclusion>().unwrap_err().to_string();
             assert!(refused.contains(why), "{wrong}: {refused}");

@@ -85,6 +85,9 @@ quantities! {
     LightSizeDeg = 0.0: "a light's size", "from 0 to 90 degrees", |v| (0.0..=90.0).contains(&v);
     /// The distance of samples toward a light, in sample steps of the eye's rays.
     ShadowStep: "a shadow step", "from 0.1 to 100 sample steps", |v| (0.1..=100.0).contains(&v);
+    /// How much of the light from everywhere may be left undecided to either side: what is less takes squares that are no longer
+    /// parted.
+    OcclusionError: "a bound of occlusion", "from 0.001 to 0.5", |v| (0.001..=0.5).contains(&v);
     /// A share of a whole.
     Share = 1.0: "a share", "from 0 to 1", |v| (0.0..=1.0).contains(&v);
     /// Number added to the encoded channels of a display picture.

@@ -120,8 +120,8 @@ impl fmt::Display for SampleCount {
 /// accessibility within a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Occlusion {
-    /// By rays from the hits.
-    Rays(AmbientOcclusion),
+    /// By what of the volume lies around the hits.
+    Volume(AmbientOcclusion),
     /// By what the picture shows.
     Screen(ScreenOcclusion),
 }
@@ -130,7 +130,7 @@ impl Occlusion {
     /// How far from a point the surface may lie that occludes it.
     pub fn distance(self) -> DistanceMm {
         match self {
-            Self::Rays(asked) => asked.distance,
+            Self::Volume(asked) => asked.distance,
             Self::Screen(asked) => asked.radius,
         }
     }
@@ -138,15 +138,23 @@ impl Occlusion {
     /// The share of the occlusion that is shown.
     pub fn strength(self) -> Share {
         match self {
-            Self::Rays(asked) => asked.strength,
+            Self::Volume(asked) => asked.strength,
             Self::Screen(asked) => asked.strength,
+        }
+    }
+
+    /// What is found in the volume, where it is.
+    pub fn in_volume(self) -> Option<AmbientOcclusion> {
+        match self {
+            Self::Volume(asked) => Some(asked),
+            Self::Screen(_) => None,
         }
     }
 
     /// The estimate from the picture, where it is made so.
     pub fn of_screen(self) -> Option<ScreenOcclusion> {
         match self {
-            Self::Rays(_) => None,
+            Self::Volume(_) => None,
             Self::Screen(asked) => Some(asked),
         }
     }

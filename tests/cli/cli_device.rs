@@ -122,7 +122,7 @@ fn missing_in_stats(stats: &Value) -> Vec<&'static str> {
     };
     // What is proven and what is occluded are of surfaces alone, and a projection has no light and is not in focus.
     let layers = match stats["scene"]["mode"].as_str() {
-        Some("iso") => 19,
+        Some("iso") => 20,
         Some("dvr") => 16,
         _ => 14,
     };
@@ -214,7 +214,7 @@ fn share_apart(a: &[f32], b: &[f32], limit: f32) -> f64 {
 
 /// Those of a picture with all layers.
 const CHANNELS: &str = "R G B A depth.Z normal.X normal.Y normal.Z value.V steps.N nodes.N cast.V kind.V \
-                        certificate.V coverage.V occlusion.V visibility.V thick.V coc.V";
+                        certificate.V coverage.V occlusion.V occlusion_bound.V visibility.V thick.V coc.V";
 
 #[test]
 fn the_layers_are_those_of_the_reference() {
@@ -233,10 +233,16 @@ fn the_layers_are_those_of_the_reference() {
             // Only a surface is proven to be hit or missed, and keeps light from itself; a projection has no light and is not in focus.
             let missing = match mode {
                 "iso" => &[][..],
-                "dvr" => &["certificate.V", "occlusion.V", "thick.V"],
+                "dvr" => &[
+                    "certificate.V",
+                    "occlusion.V",
+                    "occlusion_bound.V",
+                    "thick.V",
+                ],
                 _ => &[
                     "certificate.V",
                     "occlusion.V",
+                    "occlusion_bound.V",
                     "visibility.V",
                     "thick.V",
                     "coc.V",

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use angioray::extent::{Dims, ImageSize};
 use angioray::scene::{
-    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Occlusion, Phong, Picture,
-    RayCount, Refine, Rgb, Sampling, Scene, Share, Tone,
+    AmbientOcclusion, Camera, ClipPlane, DistanceMm, Lens, Light, Occlusion, OcclusionBy, Phong,
+    Picture, RayCount, Refine, Rgb, Sampling, Scene, Share, Tone,
 };
 use angioray::volume::{Geometry, NonFinite, Rescale, Volume};
 use glam::DVec3;
@@ -64,8 +64,13 @@ pub fn scene(eye: DVec3, point: DVec3, distance_mm: f64) -> Scene {
 }
 
 pub fn occlusion(rays: u32, distance_mm: f64) -> Occlusion {
-    Occlusion::Rays(AmbientOcclusion {
-        rays: RayCount::new(rays).unwrap(),
+    let rays = RayCount::new(rays).unwrap();
+    occlusion_by(OcclusionBy::Rays(rays), distance_mm)
+}
+
+pub fn occlusion_by(by: OcclusionBy, distance_mm: f64) -> Occlusion {
+    Occlusion::Volume(AmbientOcclusion {
+        by,
         distance: DistanceMm::new(distance_mm).unwrap(),
         strength: Share::default(),
     })

@@ -3,18 +3,19 @@
 use angioray::Subject;
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::color_error;
-use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, Wanted};
+use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, OCCLUSION_BOUND, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
-    AntiAliasing, Camera, ClipPlane, Gradient, Lens, Mode, Picture, Sampling, SamplingMethod,
-    Scene, ScreenError, Sparse, Traverse,
+    AntiAliasing, Camera, ClipPlane, Gradient, Lens, Mode, Occlusion, OcclusionBy, OcclusionError,
+    Picture, Refill, Sampling, SamplingMethod, Scene, ScreenError, Sparse, SparseGrid, Traverse,
 };
 use angioray::volume::{Geometry, PhantomKind, PhantomSpec, Volume, phantom};
 use glam::{DMat3, DVec3};
 
 use crate::common::{self, on_device, on_reference};
-use crate::occlusion_cases::{Case, balls, inside_edge, occlusion, planes, tubes};
+use crate::mutated::{CAUGHT, assert_caught, is_mutant};
+use crate::occlusion_cases::{Case, balls, inside_edge, occlusion, occlusion_by, planes, tubes};
 
 fn accessibility(device: &Device, case: &Case) -> f64 {
     let frames = on_device(device, &case.volume, std::slice::from_ref(&case.scene));
@@ -117,20 +118,167 @@ fn more_rays_are_less_wrong() {
     assert!(apart(&reference, &none)[0] > 0.05);
 }
 
+/// Occlusion within a distance, between bounds.
+fn bounded(error: f64, distance_mm: f64) -> Occlusion {
+    let error = OcclusionError::new(error).unwrap();
+    occlusion_by(OcclusionBy::Bound(error), distance_mm)
+}
+
+/// Where closed forms lie outside what bounds say, and where those are wider than was asked, a line each.
+fn outside_bounds(device: &Device) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let cases = planes().into_iter().chain(balls()).chain(inside_edge());
+    for mut case in cases.chain(tubes()) {
+        let distance_mm = case.scene.ambient_occlusion.unwrap().distance().get();
+        case.scene.ambient_occlusion = Some(bounded(0.02, distance_mm));
+        let frames = on_device(device, &case.volume, std::slice::from_ref(&case.scene));
+        let [occlusion, bound] =
+            [OCCLUSION, OCCLUSION_BOUND].map(|key| f64::from(frames[0].plane(key).unwrap()[0]));
+        let error = (1.0 - occlusion - case.accessibility).abs();
+        println!("{}: {occlusion} within {bound}, off by {error}", case.name);
+        // Voxels in single precision, and what a curved surface is between them.
+        if error > bound + 0.002 || bound > 0.02 + 1e-5 {
+            wrong.push(format!("{}: {error} beyond {bound}", case.name));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn bounds_hold_closed_forms() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let lines = outside_bounds(&device);
+    assert!(lines.is_empty(), "{CAUGHT}: {}", lines.join("\n"));
+    if is_mutant() {
+        return;
+    }
+    let test = "occlusion::bounds_hold_closed_forms";
+    // The rays in the middle of a pyramid taken for all.
+    let middle = [(
+        "(float2)(low - rounding, high + rounding)",
+        "(float2)(0.5f * (low + high))",
+    )];
+    assert_caught(test, "lib/skip/pyramid.clh", &middle);
+    // What is blocked taken for what is open, and the cosine left out of the share of a polygon.
+    let open = [(
+        "return PYRAMID_OPEN;\n            float until",
+        "return PYRAMID_BLOCKED;\n            float until",
+    )];
+    assert_caught(test, "lib/skip/pyramid.clh", &open);
+    let flat = [(
+        "dot(across, normal) * (atan2(size, dot(from, to)) / size)",
+        "dot(across, normal)",
+    )];
+    assert_caught(test, "lib/light/cube.clh", &flat);
+}
+
+#[test]
+fn bounds_hold_the_reference_and_are_as_narrow_as_asked() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let mut scenes = [0.2, 0.05, 0.02].map(|error| Scene {
+        ambient_occlusion: Some(bounded(error, 8.0)),
+        ..scene(&volume, 1)
+    });
+    scenes[1].clip_planes = vec![ClipPlane::new(DVec3::new(0.6, 0.0, 0.8), -20.0).unwrap()];
+    for scene in &scenes {
+        let reference = on_reference(&volume, scene);
+        let frame = &on_device(&device, &volume, std::slice::from_ref(scene))[0];
+        let kinds = reference
+            .plane(KIND)
+            .unwrap()
+            .iter()
+            .zip(frame.plane(KIND).unwrap());
+        let told = frame
+            .plane(OCCLUSION)
+            .unwrap()
+            .iter()
+            .zip(frame.plane(OCCLUSION_BOUND).unwrap());
+        let both = kinds.zip(reference.plane(OCCLUSION).unwrap().iter().zip(told));
+        let both: Vec<[f32; 2]> = both
+            .filter(|((a, b), _)| [**a, **b] == [Kind::Surface as u32; 2])
+            .map(|(_, (truth, (told, bound)))| [(truth - told).abs(), *bound])
+            .collect();
+        assert!(both.len() > 300, "{}", both.len());
+        // The reference's own 1024 rays are off by 0.006 at most.
+        let outside = both
+            .iter()
+            .filter(|[error, bound]| *error > bound + 0.006)
+            .count();
+        assert_eq!(outside, 0);
+        let asked = scene.occlusion_error().unwrap().get() as f32;
+        let beyond = both
+            .iter()
+            .filter(|[_, bound]| *bound > asked + 1e-5)
+            .count();
+        assert!(5 * beyond < both.len(), "{beyond} of {}", both.len());
+        // The control: what is told is no truth, and half the bound would not hold it everywhere.
+        assert!(
+            both.iter()
+                .any(|[error, bound]| *error > 0.5 * bound + 0.006)
+        );
+    }
+}
+
+#[test]
+fn nothing_is_known_of_what_is_filled() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = vessels();
+    let grid = SparseGrid::new(4, None).unwrap();
+    let scene = Scene {
+        ambient_occlusion: Some(bounded(0.1, 8.0)),
+        sparse: Some(Sparse::new(Some(grid), Some(Refill::None), None, Mode::Iso).unwrap()),
+        ..scene(&volume, 1)
+    };
+    let frame = &on_device(&device, &volume, &[scene])[0];
+    let planes = frame
+        .plane(CAST)
+        .unwrap()
+        .iter()
+        .zip(frame.plane(KIND).unwrap());
+    let mut filled = 0;
+    for ((&cast, &kind), &bound) in planes.zip(frame.plane(OCCLUSION_BOUND).unwrap()) {
+        match (cast, kind) {
+            (_, 0) => assert_eq!(bound, 0.0),
+            (0, _) => {
+                filled += 1;
+                assert_eq!(bound, 1.0);
+            }
+            _ => assert!(bound < 0.5),
+        }
+    }
+    assert!(filled > 300, "{filled}");
+}
+
 #[test]
 fn skipping_and_lanes_change_nothing() {
     let Some(device) = common::device() else {
         return;
     };
     let volume = vessels();
-    let octree = common::octree(&volume);
-    let base = scene(&volume, 8);
+    for occlusion in [occlusion(8, 8.0), bounded(0.1, 8.0)] {
+        let base = Scene {
+            ambient_occlusion: Some(occlusion),
+            ..scene(&volume, 8)
+        };
+        nothing_changes(&device, &volume, base);
+    }
+}
+
+fn nothing_changes(device: &Device, volume: &Volume, base: Scene) {
+    let octree = common::octree(volume);
     let render = |scene: &Scene, lanes| {
         let options = Options {
             lanes,
             ..Options::default()
         };
-        let mut renderer = Renderer::new(&device, &volume, &octree, options).unwrap();
+        let mut renderer = Renderer::new(device, volume, &octree, options).unwrap();
         renderer.render(scene, Wanted::ALL).unwrap().frame
     };
     let plain = render(&base, None);
@@ -163,7 +311,7 @@ fn skipping_and_lanes_change_nothing() {
     assert_ne!(render(&forward, None).color, plain.color);
     // The control: from elsewhere it is another picture.
     let mut turned = base.clone();
-    turned.camera = common::camera(&volume, DVec3::NEG_X);
+    turned.camera = common::camera(volume, DVec3::NEG_X);
     assert_ne!(render(&turned, None).plane(OCCLUSION).unwrap(), occluded);
 }
 
@@ -212,9 +360,23 @@ fn it_is_the_references_in_oblique_volumes_from_any_camera() {
         scene.clip_planes = vec![ClipPlane::new(DVec3::Y, -center.y + 0.8 * radius_mm).unwrap()];
         scene.ambient_occlusion = Some(occlusion(256, 4.0));
         let reference = on_reference(&volume, &scene);
-        let frames = on_device(&device, &volume, &[scene]);
+        let bounds = Scene {
+            ambient_occlusion: Some(bounded(0.05, 4.0)),
+            ..scene.clone()
+        };
+        let frames = on_device(&device, &volume, &[scene, bounds]);
         let [mean, bias] = apart(&reference, &frames[0]);
         assert!(mean < 0.01 && bias.abs() < 0.003, "{mean} {bias}");
+        let told = frames[1].plane(OCCLUSION).unwrap().iter();
+        let told = told.zip(frames[1].plane(OCCLUSION_BOUND).unwrap());
+        let truths = reference
+            .plane(OCCLUSION)
+            .unwrap()
+            .iter()
+            .zip(reference.plane(KIND).unwrap());
+        for ((told, bound), (truth, kind)) in told.zip(truths) {
+            assert!(*kind != Kind::Surface as u32 || (told - truth).abs() < bound + 0.006);
+        }
         let shares = reference.plane(OCCLUSION).unwrap();
         assert!(shares.iter().any(|share| *share > 0.05));
     }

@@ -232,10 +232,11 @@ fn variant(
     .options()
 }
 
-/// The [`combinations`] of switches with both filters; with all outputs, also every voxel type, a leaf
+/// The [`combinations`] of switches with both filters; of what reads voxels with all outputs, also every voxel type, a leaf
 /// that is no power of two, indices of 64 bits, and images.
 fn builds(path: &str) -> Vec<Build> {
     let text = flatten(path).unwrap();
+    let reads_voxels = read(path).contains("VOXELS");
     let mut builds = Vec::new();
     let buffer = Storage::Buffer;
     for (voxel, storage, leaf, wide_index) in [
@@ -260,7 +261,7 @@ fn builds(path: &str) -> Vec<Build> {
                     variant: variant.clone(),
                     switches,
                 };
-                if plain || build.has_all_outputs() {
+                if plain || (reads_voxels && build.has_all_outputs()) {
                     builds.push(build);
                 }
             }

@@ -46,7 +46,7 @@ fn only_the_light_from_everywhere_is_occluded() {
     };
     let color_with = |strength: f64| {
         let mut scene = case.scene.clone();
-        let Some(Occlusion::Rays(asked)) = &mut scene.ambient_occlusion else {
+        let Some(Occlusion::Volume(asked)) = &mut scene.ambient_occlusion else {
             panic!("rays");
         };
         asked.strength = Share::new(strength).unwrap();

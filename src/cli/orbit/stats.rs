@@ -43,6 +43,7 @@ pub fn write(runner: &OrbitRunner<'_>, outcome: &OrbitOutcome, existing: usize) 
             },
             passes: passes_of_all(written),
             rays_per_round: Vec::new(),
+            occlusion_bound: None,
             sample_check: None,
             focus_mm: None,
             sampling_check: None,

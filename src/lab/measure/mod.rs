@@ -3,6 +3,7 @@
 
 mod banding;
 mod borderline;
+mod bound_reached;
 mod counts;
 mod evaluation;
 mod hit_verdict;
@@ -20,6 +21,7 @@ mod settings;
 
 pub use banding::Banding;
 pub use borderline::{Borderline, Closeness, excuse_dips};
+pub use bound_reached::BoundReached;
 pub use counts::Counts;
 pub use evaluation::{
     Evaluation, FrameTime, error_scale, evaluate, evaluate_pixels, evaluated_planes, time,

@@ -346,7 +346,7 @@ fn check_alone(scene: &Scene) -> Result<()> {
         Some(Occlusion::Screen(_)) => Err(Error::usage(
             "occlusion that is estimated from the picture needs all of its pixels",
         )),
-        Some(Occlusion::Rays(_)) | None => Ok(()),
+        Some(Occlusion::Volume(_)) | None => Ok(()),
     }
 }
 

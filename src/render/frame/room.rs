@@ -45,7 +45,7 @@ pub fn listing_bytes(scene: &Scene) -> u64 {
     );
     let of_screen = match scene.ambient_occlusion {
         Some(Occlusion::Screen(_)) => ScreenPlanes::PIXEL_BYTES,
-        Some(Occlusion::Rays(_)) | None => 0,
+        Some(Occlusion::Volume(_)) | None => 0,
     };
     /// A depth and a circle of confusion.
     const DEEP: u64 = 4 + 4;
@@ -150,7 +150,7 @@ mod tests {
     fn a_picture_fits_beside_its_volume() {
         let size = ImageSize::new(10, 10).unwrap();
         let of = |memory, held| check_picture(&device(memory, memory), size, Wanted::NONE, held);
-        let needs = 100 * (3 * 16 + 12 * 4);
+        let needs = 100 * (3 * 16 + 13 * 4);
         assert_eq!(of(needs, 0), Ok(()));
         assert_eq!(of(needs + 5, 5), Ok(()));
         assert!(of(needs - 1, 0).is_err() && of(needs, 1).is_err());

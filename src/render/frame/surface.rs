@@ -7,14 +7,14 @@ use crate::render::abi::{
     Filling, KernelEnum, Material, Shading, StoredIso, SurfaceCast, covector_scale, shading,
 };
 use crate::render::passes::{
-    Blocks, Hiding, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights,
-    ambient_occlusion, behind_surface, cast_shadows, cast_surface, exact_surface, interpolate_hits,
-    mark_uncertain, occlusion_between, shade_surface, surface_normal,
+    Blocks, Bounding, Hiding, Leaving, Lit, Run, Seen, SurfaceBlocks, Thickness, TowardLights,
+    ambient_occlusion, behind_surface, bound_occlusion, cast_shadows, cast_surface, exact_surface,
+    interpolate_hits, mark_uncertain, occlusion_between, shade_surface, surface_normal,
 };
 use crate::render::resources::{RaySets, RaySource};
 use crate::scene::{
-    AmbientOcclusion, Filter, Occlusion, Phong, Refill, Refine, Rgb, SamplingMethod, ScreenError,
-    ShadedFrom,
+    AmbientOcclusion, Filter, Occlusion, OcclusionBy, OcclusionError, Phong, Refill, Refine, Rgb,
+    SamplingMethod, ScreenError, ShadedFrom,
 };
 
 use super::planes::{Centers, Planes};
@@ -51,15 +51,22 @@ enum FoundBy {
         asked: AmbientOcclusion,
         directions: RaySets,
     },
+    Bounds {
+        asked: AmbientOcclusion,
+        error: OcclusionError,
+    },
     Screen(ScreenPasses),
 }
 
 impl FoundBy {
     fn new(run: &Run, asked: Occlusion) -> Result<Self> {
         Ok(match asked {
-            Occlusion::Rays(asked) => Self::Rays {
-                asked,
-                directions: RaySets::over_hemisphere(run.device, asked.rays.get())?,
+            Occlusion::Volume(asked) => match asked.by {
+                OcclusionBy::Rays(rays) => Self::Rays {
+                    asked,
+                    directions: RaySets::over_hemisphere(run.device, rays.get())?,
+                },
+                OcclusionBy::Bound(error) => Self::Bounds { asked, error },
             },
             Occlusion::Screen(asked) => Self::Screen(ScreenPasses::new(run, asked)?),
         })
@@ -68,6 +75,7 @@ impl FoundBy {
     fn bytes(&self) -> u64 {
         match self {
             Self::Rays { directions, .. } => directions.bytes(),
+            Self::Bounds { .. } => 0,
             Self::Screen(passes) => passes.bytes(),
         }
     }
@@ -132,6 +140,10 @@ impl<'a> SurfacePasses<'a> {
         }
         if self.occlusion.is_some() {
             layers.push(Layer::Occlusion);
+        }
+        let is_bounded = matches!(self.occlusion, Some(FoundBy::Bounds { .. }));
+        if is_bounded && wanted.has(Layer::OcclusionBound) {
+            layers.push(Layer::OcclusionBound);
         }
         if self.shadows.is_some() && wanted.has(Layer::Visibility) {
             layers.push(Layer::Visibility);
@@ -251,7 +263,7 @@ impl Schedule for SurfacePasses<'_> {
         if self.is_shaded {
             layers.push(Layer::Normal);
         }
-        if matches!(self.occlusion, Some(FoundBy::Rays { .. })) {
+        if self.occlusion.is_some() && self.screen().is_none() {
             layers.push(Layer::Occlusion);
         }
         self.planes_of(run, &layers).map(Some)
@@ -356,39 +368,44 @@ impl SurfacePasses<'_> {
         self.light_hits(run, planes)
     }
 
-    /// Shades the hits by what rays tell of their occlusion, where those do.
+    /// Shades the hits by what the volume around them tells of their occlusion, where it does.
     fn light_hits(&self, run: &mut Run, planes: &mut Planes) -> Result<()> {
-        let Some(FoundBy::Rays { asked, directions }) = &self.occlusion else {
-            return self.shade(run, false, planes);
-        };
-        self.occlude(run, *asked, directions, planes)?;
-        self.shade(run, true, planes)
+        let is_known = self.occlude(run, planes)?;
+        self.shade(run, is_known, planes)
     }
 
-    /// Finds what is occluded of the hits by rays that leave them.
-    fn occlude(
-        &self,
-        run: &mut Run,
-        asked: AmbientOcclusion,
-        directions: &RaySets,
-        planes: &mut Planes,
-    ) -> Result<()> {
+    /// Finds what is occluded of the hits in the volume, and whether it is found there.
+    fn occlude(&self, run: &mut Run, planes: &mut Planes) -> Result<bool> {
         let Planes {
             hit_mm: Some(hit_mm),
             layers,
             ..
         } = planes
         else {
-            return Ok(());
+            return Ok(false);
         };
         let volume = self.view.volume;
         let start_mm = START_VOXELS * volume.geometry().smallest_spacing_mm();
-        let scale = covector_scale(volume);
-        let leaving = Leaving {
-            directions,
-            t: [start_mm, asked.distance.get()].map(|mm| (mm * scale) as f32),
-        };
-        ambient_occlusion(run, self.view.inputs, &self.cast, leaving, hit_mm, layers)
+        let in_t = |mm: f64| (mm * covector_scale(volume)) as f32;
+        let (inputs, cast) = (self.view.inputs, &self.cast);
+        match &self.occlusion {
+            Some(FoundBy::Rays { asked, directions }) => {
+                let leaving = Leaving {
+                    directions,
+                    t: [start_mm, asked.distance.get()].map(in_t),
+                };
+                ambient_occlusion(run, inputs, cast, leaving, hit_mm, layers)?;
+            }
+            Some(FoundBy::Bounds { asked, error }) => {
+                let bounding = Bounding {
+                    t_max: in_t(asked.distance.get()),
+                    unknown: (2.0 * error.get()) as f32,
+                };
+                bound_occlusion(run, inputs, cast, bounding, hit_mm, layers)?;
+            }
+            Some(FoundBy::Screen(_)) | None => return Ok(false),
+        }
+        Ok(true)
     }
 
     /// Finds what reaches the hits of each light, where shadows are cast.

@@ -20,12 +20,13 @@ pub struct Fill {
     pub with_normals: bool,
 }
 
-/// The layers of what a ray meets that are filled as means.
-const OF_POINTS: [Layer; 6] = [
+/// The layers of what a ray meets.
+const OF_POINTS: [Layer; 7] = [
     Layer::Kind,
     Layer::Depth,
     Layer::Value,
     Layer::Occlusion,
+    Layer::OcclusionBound,
     Layer::Visibility,
     Layer::Thick,
 ];
@@ -50,6 +51,7 @@ pub fn fill_uncast(
         .with("WITH_DEPTH", has(Layer::Depth))
         .with("WITH_VALUE", has(Layer::Value))
         .with("WITH_OCCLUSION", has(Layer::Occlusion))
+        .with("WITH_OCCLUSION_BOUND", has(Layer::OcclusionBound))
         .with("WITH_VISIBILITY", has(Layer::Visibility))
         .with("WITH_THICK", has(Layer::Thick))
         .with("WITH_SPANS", u32::from(spans.is_some()))

@@ -59,6 +59,16 @@ impl Run<'_> {
         self.launch(name, defines, args, size, tile)
     }
 
+    /// The same where a work-item takes one ray, whatever the variant's number.
+    ///
+    /// # Errors
+    /// As [`Run::cast`].
+    pub fn cast_singly(&mut self, name: &'static str, defines: Defines, args: Args) -> Result<()> {
+        let (size, tile) = self.rays.launch_size(Lanes::ONE)?;
+        let defines = defines.with("RAYS", self.rays.kind().number());
+        self.launch(name, defines, args, size, tile)
+    }
+
     /// Begins the arguments of a screen pass: one that runs over all pixels of the picture, whichever have
     /// rays.
     ///

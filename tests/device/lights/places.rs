@@ -47,6 +47,7 @@ fn a_light_of_the_camera_turns_with_it_and_one_of_the_patient_does_not() {
     for (text, turns_with_camera) in [
         ("headlight", true),
         ("camera:-0.6,0.5,0.4", true),
+        ("camera-point:-20,15,-9", true),
         ("0.8,-0.5,0.3", false),
         ("point:30,-10,20", false),
     ] {

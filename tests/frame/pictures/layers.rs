@@ -6,7 +6,7 @@ use std::path::Path;
 
 use angioray::frame::{
     CERTIFICATE, COC, COVERAGE, DEPTH, Encoding, Format, Frame, KIND, Layer, NODES, NORMAL,
-    OCCLUSION, STEPS, THICK, VALUE, VISIBILITY, channels, write,
+    OCCLUSION, OCCLUSION_BOUND, STEPS, THICK, VALUE, VISIBILITY, channels, write,
 };
 
 use super::{METADATA, all_layers, picture};
@@ -45,6 +45,7 @@ fn plane(frame: &Frame, name: &str) -> Vec<f32> {
         "certificate.V" => count(CERTIFICATE),
         "coverage.V" => frame.plane(COVERAGE).unwrap().to_vec(),
         "occlusion.V" => frame.plane(OCCLUSION).unwrap().to_vec(),
+        "occlusion_bound.V" => frame.plane(OCCLUSION_BOUND).unwrap().to_vec(),
         "visibility.V" => frame.plane(VISIBILITY).unwrap().to_vec(),
         "thick.V" => frame.plane(THICK).unwrap().to_vec(),
         "coc.V" => frame.plane(COC).unwrap().to_vec(),
@@ -81,7 +82,7 @@ fn exr_holds_every_layer_exactly() {
     let mut names = channels(&all_layers(Format::Exr));
     names.sort();
     assert_eq!(read.keys().cloned().collect::<Vec<_>>(), names);
-    assert_eq!(names.len(), 19);
+    assert_eq!(names.len(), 20);
     for (name, samples) in &read {
         let bits = |s: &[f32]| s.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(samples), bits(&plane(&frame, name)), "{name}");
@@ -125,9 +126,9 @@ fn npy_has_numpys_header_and_the_channels_last() {
     write(&path, &frame, &encoding, &METADATA).unwrap();
     let bytes = fs::read(&path).unwrap();
 
-    // As numpy 2.4 writes np.zeros((3, 5, 19), '<f4').
+    // As numpy 2.4 writes np.zeros((3, 5, 20), '<f4').
     let mut expected = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 19), }");
+    expected.extend(b"{'descr': '<f4', 'fortran_order': False, 'shape': (3, 5, 20), }");
     expected.resize(127, b' ');
     expected.push(b'\n');
     assert_eq!(bytes[..128], expected);
@@ -137,7 +138,7 @@ fn npy_has_numpys_header_and_the_channels_last() {
         .chunks_exact(4)
         .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
         .collect();
-    assert_eq!(values.len(), 3 * 5 * 19);
+    assert_eq!(values.len(), 3 * 5 * 20);
     for (channel, name) in names.iter().enumerate() {
         let samples: Vec<_> = values
             .iter()
@@ -172,6 +173,7 @@ fn channel_names_keep_one_order() {
             "certificate.V",
             "coverage.V",
             "occlusion.V",
+            "occlusion_bound.V",
             "visibility.V",
             "thick.V",
             "coc.V"

@@ -4,6 +4,7 @@
 // Reads the voxels, the transfer function's knots (emission.clh), the clip planes (index space), per octree node its CLASS_*, and
 // a bit per cell in which something absorbs. Writes light_depths from `first` on: `side` layers of side * side numbers, spacing_mm
 // apart along the view axis, the first nearest_mm from the eye.
+#define SHADOWS SHADOWS_EXACT
 #include "lib/light/feeler.clh"
 #include "lib/ray/camera.clh"
 

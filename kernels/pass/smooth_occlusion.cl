@@ -1,7 +1,7 @@
 // The mean of estimates of occlusion over the pixels around each hit: over squares of 4, in each of which every pixel was
 // estimated by sections of its own, at the four places that hold the pixel in their middle. A pixel counts by how near its hit is
-// to the tangent plane of the point, and how near to the point, so that neither what lies before nor what lies behind an
-// edge does, however the surface is tilted.
+// to the tangent plane of the point, and how near to the point, within half of the radius, so that neither what lies before nor
+// what lies behind an edge does, however the surface is tilted.
 //
 // px, radius_mm: as in screen_occlusion.cl. Reads spans, estimate, normal and kind. Writes occlusion.
 #include "lib/ray/camera.clh"
@@ -9,6 +9,9 @@
 
 // Half the width of what is averaged, pixels.
 #define HALF_WIDTH 2
+
+// How far from the point a hit may lie that counts, as a share of the radius: occlusion is not the same all around.
+#define FARTHEST_SHARE 0.5f
 
 // How far from the tangent plane a hit may lie that counts, as a share of the radius; and in pixels, whichever is more.
 #define RADIUS_SHARE 0.15f
@@ -36,7 +39,7 @@ kernel void smooth_occlusion(RayGrid rays, float4 right, float4 down, float2 px,
         Floats front = read_float2(spans, pixels).x;
         Floats near_mm = max_of(FLOATS(RADIUS_SHARE * radius_mm), PLANE_PX * (px.x + px.y * front));
         Floats per_height = 1.0f / near_mm;
-        float per_square = 1.0f / (radius_mm * radius_mm);
+        float per_square = 1.0f / (FARTHEST_SHARE * FARTHEST_SHARE * radius_mm * radius_mm);
         weights = FLOATS(0.0f);
         for (int y = -HALF_WIDTH; y <= HALF_WIDTH; y++) {
             for (int x = -HALF_WIDTH; x <= HALF_WIDTH; x++) {

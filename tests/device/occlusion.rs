@@ -3,7 +3,7 @@
 use angioray::Subject;
 use angioray::extent::{Dims, ImageSize};
 use angioray::frame::error::color_error;
-use angioray::frame::{CAST, Frame, KIND, Kind, OCCLUSION, OCCLUSION_BOUND, Wanted};
+use angioray::frame::{CAST, DEPTH, Frame, KIND, Kind, OCCLUSION, OCCLUSION_BOUND, Wanted};
 use angioray::gpu::Device;
 use angioray::render::{Lanes, Options, Renderer};
 use angioray::scene::{
@@ -130,14 +130,14 @@ fn outside_bounds(device: &Device) -> Vec<String> {
     let cases = planes().into_iter().chain(balls()).chain(inside_edge());
     for mut case in cases.chain(tubes()) {
         let distance_mm = case.scene.ambient_occlusion.unwrap().distance().get();
-        case.scene.ambient_occlusion = Some(bounded(0.02, distance_mm));
+        case.scene.ambient_occlusion = Some(bounded(0.03, distance_mm));
         let frames = on_device(device, &case.volume, std::slice::from_ref(&case.scene));
         let [occlusion, bound] =
             [OCCLUSION, OCCLUSION_BOUND].map(|key| f64::from(frames[0].plane(key).unwrap()[0]));
         let error = (1.0 - occlusion - case.accessibility).abs();
         println!("{}: {occlusion} within {bound}, off by {error}", case.name);
         // Voxels in single precision, and what a curved surface is between them.
-        if error > bound + 0.002 || bound > 0.02 + 1e-5 {
+        if error > bound + 0.002 || bound > 0.03 + 1e-5 {
             wrong.push(format!("{}: {error} beyond {bound}", case.name));
         }
     }
@@ -163,8 +163,8 @@ fn bounds_hold_closed_forms() {
     assert_caught(test, "lib/skip/pyramid.clh", &middle);
     // What is blocked taken for what is open, and the cosine left out of the share of a polygon.
     let open = [(
-        "return PYRAMID_OPEN;\n            float until",
-        "return PYRAMID_BLOCKED;\n            float until",
+        "? PYRAMID_BLOCKED : PYRAMID_UNKNOWN",
+        "? PYRAMID_OPEN : PYRAMID_UNKNOWN",
     )];
     assert_caught(test, "lib/skip/pyramid.clh", &open);
     let flat = [(
@@ -174,48 +174,52 @@ fn bounds_hold_closed_forms() {
     assert_caught(test, "lib/light/cube.clh", &flat);
 }
 
+/// How far a picture's occlusion is from the reference's, and how far it says that it may be, where both hit one place.
+fn bounds_of_same_hits(reference: &Frame, frame: &Frame) -> Vec<[f32; 2]> {
+    let of = |frame: &Frame, pixel: usize| {
+        let depth = frame.plane(DEPTH).unwrap()[pixel];
+        let is_hit = frame.plane(KIND).unwrap()[pixel] == Kind::Surface as u32;
+        is_hit.then(|| (depth, frame.plane(OCCLUSION).unwrap()[pixel]))
+    };
+    let bounds = frame.plane(OCCLUSION_BOUND).unwrap().iter().enumerate();
+    let at = bounds.filter_map(|(pixel, &bound)| {
+        let ((depth, truth), (own_depth, told)) = (of(reference, pixel)?, of(frame, pixel)?);
+        ((depth - own_depth).abs() < 1e-3).then_some([(truth - told).abs(), bound])
+    });
+    at.collect()
+}
+
 #[test]
 fn bounds_hold_the_reference_and_are_as_narrow_as_asked() {
     let Some(device) = common::device() else {
         return;
     };
     let volume = vessels();
-    let mut scenes = [0.2, 0.05, 0.02].map(|error| Scene {
+    let mut scenes = [0.2, 0.1, 0.05].map(|error| Scene {
         ambient_occlusion: Some(bounded(error, 8.0)),
         ..scene(&volume, 1)
     });
-    scenes[1].clip_planes = vec![ClipPlane::new(DVec3::new(0.6, 0.0, 0.8), -20.0).unwrap()];
+    let (center, _) = volume.bounding_sphere();
+    let half = ClipPlane::new(common::OBLIQUE, -common::OBLIQUE.dot(center)).unwrap();
+    scenes[1].clip_planes = vec![half];
     for scene in &scenes {
         let reference = on_reference(&volume, scene);
         let frame = &on_device(&device, &volume, std::slice::from_ref(scene))[0];
-        let kinds = reference
-            .plane(KIND)
-            .unwrap()
-            .iter()
-            .zip(frame.plane(KIND).unwrap());
-        let told = frame
-            .plane(OCCLUSION)
-            .unwrap()
-            .iter()
-            .zip(frame.plane(OCCLUSION_BOUND).unwrap());
-        let both = kinds.zip(reference.plane(OCCLUSION).unwrap().iter().zip(told));
-        let both: Vec<[f32; 2]> = both
-            .filter(|((a, b), _)| [**a, **b] == [Kind::Surface as u32; 2])
-            .map(|(_, (truth, (told, bound)))| [(truth - told).abs(), *bound])
-            .collect();
+        let both = bounds_of_same_hits(&reference, frame);
         assert!(both.len() > 300, "{}", both.len());
-        // The reference's own 1024 rays are off by 0.006 at most.
-        let outside = both
-            .iter()
-            .filter(|[error, bound]| *error > bound + 0.006)
-            .count();
-        assert_eq!(outside, 0);
+        // The reference's own 1024 rays are off by 0.0012 in the mean, by 0.006 at most for an edge.
+        let outside = |more: f32| {
+            let beyond = |[error, bound]: &&[f32; 2]| *error > bound + more;
+            both.iter().filter(beyond).count()
+        };
+        assert_eq!(outside(0.012), 0);
+        assert!(100 * outside(0.003) < both.len(), "{}", outside(0.003));
         let asked = scene.occlusion_error().unwrap().get() as f32;
         let beyond = both
             .iter()
             .filter(|[_, bound]| *bound > asked + 1e-5)
             .count();
-        assert!(5 * beyond < both.len(), "{beyond} of {}", both.len());
+        assert!(10 * beyond < both.len(), "{beyond} of {}", both.len());
         // The control: what is told is no truth, and half the bound would not hold it everywhere.
         assert!(
             both.iter()
@@ -264,6 +268,7 @@ fn skipping_and_lanes_change_nothing() {
     let volume = vessels();
     for occlusion in [occlusion(8, 8.0), bounded(0.1, 8.0)] {
         let base = Scene {
+            size: ImageSize::new(48, 48).unwrap(),
             ambient_occlusion: Some(occlusion),
             ..scene(&volume, 8)
         };

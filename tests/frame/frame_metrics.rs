@@ -82,7 +82,7 @@ fn focus_parts_pixels_by_depth_and_circle() {
             .insert(COC, vec![0.5, -0.5, -0.6, 3.0, 7.0, 7.0]);
         frame
     };
-    let reference = with(0.5, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+    let mut reference = with(0.5, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
     let mut frame = with(0.5, [1.0, 1.0, 1.0, 1.0, 0.25, 0.0]);
     // The fifth pixel is covered by the picture alone, the last by neither.
     let display = frame.display.as_mut().unwrap();
@@ -99,6 +99,13 @@ fn focus_parts_pixels_by_depth_and_circle() {
     assert_eq!(part(error.beside), (1, 0.5));
     near(error.near.psnr_db.unwrap(), -20.0 * 0.25_f64.log10(), 1e-12);
     assert_eq!(error.far.psnr_db, Some(f64::INFINITY));
+    // The near pixel and the one beside it, of which the reference covers the first.
+    let mut covered = frame.clone();
+    reference.color[2][3] = 0.5;
+    covered.color[2][3] = 0.375;
+    covered.color[4][3] = 0.25;
+    let error = focus_error(&reference, &covered).unwrap();
+    near(error.silhouette.unwrap(), 0.25, 1e-12);
     // Without circles there is nothing to part them by.
     assert!(focus_error(&flat(6, 1, 0.5), &frame).is_err());
 }

@@ -9,7 +9,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::error::{Error, Result};
-use crate::lab::compare::{Comparison, Configs, Folder, ModeSettings, Row, printed_table};
+use crate::lab::compare::{
+    Comparison, Configs, Folder, Look, ModeSettings, Preset, Row, printed_table,
+};
 use crate::lab::measure::Peer;
 use crate::octree::Octree;
 use crate::options::{Count, ErrorBound, FilePath, SceneOptions, ToleranceOptions};
@@ -32,6 +34,7 @@ use reference_cache::reference_cache;
 #[command(after_help = "Example:
   angioray compare head.nrrd -o head
   angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
+  angioray compare head.nrrd -o head --preset lighting --iso 150 --size 512
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 
@@ -163,7 +166,9 @@ impl CompareArguments {
             .map(|FilePath(path)| Configs::read(path))
             .transpose()?;
         let of_configs = || configs.as_ref().and_then(Configs::modes);
-        let modes = modes.or_else(of_configs).unwrap_or(MODES.to_vec());
+        let of_preset = || Some(compare.preset?.modes().to_vec());
+        let modes = modes.or_else(of_configs).or_else(of_preset);
+        let modes = modes.unwrap_or(MODES.to_vec());
         Ok(Request {
             output,
             compare,
@@ -180,6 +185,9 @@ impl CompareArguments {
 
 impl Request {
     fn check_flags(&self) -> Result<()> {
+        if let Some(preset) = self.compare.preset {
+            self.modes.iter().try_for_each(|&mode| preset.check(mode))?;
+        }
         checks::meaning(&self.flags, &self.modes)?;
         match self.bound {
             Some(bound) => checks::bound(bound, &self.modes),
@@ -193,6 +201,14 @@ impl Request {
         checks::inputs(folder, source, options, self.scene_file.path(), configs)
     }
 
+    /// Each mode in each look.
+    fn seen(&self) -> Vec<(Mode, Option<Look>)> {
+        let looks = self.compare.preset.map(Preset::looks);
+        let looks = looks.map_or(vec![None], |looks| looks.map(Some).to_vec());
+        let in_looks = |&mode: &Mode| looks.iter().map(move |&look| (mode, look));
+        self.modes.iter().flat_map(in_looks).collect()
+    }
+
     /// The modes in their settings, all seen from one place, about which the user is notified.
     fn mode_settings(
         &self,
@@ -200,19 +216,20 @@ impl Request {
         loaded: &mut Loaded,
     ) -> Result<Vec<ModeSettings>> {
         let options = loaded.measured(options);
-        let modes = self.modes.iter();
-        let seen = modes.map(|&mode| ModeSettings::seen(mode, &options));
-        loaded.frame(&seen.collect::<Result<Vec<_>>>()?)?;
-        let modes = self.modes.iter();
-        let mut modes = modes
-            .map(|&mode| mode_settings(mode, &options, self.configs.as_ref(), loaded))
+        let seen = self.seen();
+        let shown = seen.iter();
+        let shown = shown.map(|&(mode, look)| ModeSettings::seen(mode, look, &options));
+        loaded.frame(&shown.collect::<Result<Vec<_>>>()?)?;
+        let seen = seen.into_iter();
+        let mut modes = seen
+            .map(|seen| mode_settings(seen, &options, self.configs.as_ref(), loaded))
             .collect::<Result<Vec<ModeSettings>>>()?;
         if let Some(bound) = self.bound {
             add_bound(&mut modes, bound);
         }
         for of_mode in &modes {
             let notes = of_mode.resolved.notes.iter();
-            notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.mode)));
+            notes.for_each(|sentence| note(format_args!("{}: {sentence}", of_mode.name())));
         }
         Ok(modes)
     }
@@ -231,13 +248,13 @@ fn load_into(peers: &mut [Peer], loaded: &Loaded, bars: &Bars) -> Result<()> {
 /// A mode in its settings: those of the file, or the built-in ones, and what the flags say of how
 /// rays are followed as a further one.
 fn mode_settings(
-    mode: Mode,
+    (mode, look): (Mode, Option<Look>),
     options: &SceneOptions,
     configs: Option<&Configs>,
     loaded: &Loaded,
 ) -> Result<ModeSettings> {
     let settings = configs.map(|configs| configs.of_mode(mode));
-    let mut of_mode = ModeSettings::new(mode, options, settings, &loaded.subject)?;
+    let mut of_mode = ModeSettings::new((mode, look), options, settings, &loaded.subject)?;
     of_mode.add_given(options, &loaded.subject)?;
     Ok(of_mode)
 }
@@ -248,7 +265,7 @@ fn add_bound(modes: &mut [ModeSettings], bound: ErrorBound) {
         if of_mode.add_bound(bound).is_err() {
             note(format_args!(
                 "{}: max-error {bound} has no meaning there, nothing is chosen",
-                of_mode.mode
+                of_mode.name()
             ));
         }
     }

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::error::{Error, Result};
+use crate::lab::compare::Preset;
 use crate::options::group::group;
 use crate::options::text_form::{one_or_more, readable};
 use crate::options::{Count, FilePath, SceneFile, SceneOptions};
@@ -20,6 +21,11 @@ group! {
         /// The modes, separated by commas [default: the one of --mode, else iso,mip,lmip,dvr]
         #[arg(long, value_name = "LIST")]
         modes: Modes,
+
+        /// Compare what is shown, too: lighting shows each mode unlit, lit, and lit with shadows, each
+        /// beside its own reference
+        #[arg(long, value_name = "lighting", allow_hyphen_values = true)]
+        preset: Preset,
 
         /// Compare the settings of this TOML file in place of the built-in ones
         #[arg(long, value_name = "FILE.toml")]
@@ -87,7 +93,7 @@ impl FromStr for Modes {
     }
 }
 
-readable!(Modes);
+readable!(Modes, Preset);
 
 /// The modes that are named: several, or one.
 pub struct Named(Option<Modes>, Option<Mode>);

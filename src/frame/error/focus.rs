@@ -19,6 +19,9 @@ pub struct FocusError {
     pub far: PartError,
     /// Where nothing is seen but through the lens, in either picture.
     pub beside: PartError,
+    /// How much more opacity there is near and beside than in the reference, as a share of that: where nothing lies behind what is
+    /// near, how much larger its silhouette is. `None` if the reference has none there.
+    pub silhouette: Option<f64>,
 }
 
 /// The error in a part of a picture.
@@ -63,13 +66,19 @@ pub fn focus_error(reference: &Frame, frame: &Frame) -> Result<FocusError> {
         .plane(DEPTH)
         .ok_or_else(|| Error::failed("the reference has no depths to compare by"))?;
     let mut parts = [(0, 0.0); 4];
+    let mut opacities = [0.0; 2];
     for (pixel, (&circle, &depth)) in circles.iter().zip(depths).enumerate() {
         let is_deep = depth.is_finite();
         let covers = |frame: &Frame| frame.color[pixel][3] > 0.0;
         if is_deep || covers(reference) || covers(frame) {
-            let part = if is_deep { part_of(circle) } else { 3 };
+            let part = if is_deep { part_of(circle) } else { BESIDE };
             let (pixels, squares) = &mut parts[part];
             *pixels += 1;
+            if matches!(part, NEAR | BESIDE) {
+                for (sum, frame) in opacities.iter_mut().zip([reference, frame]) {
+                    *sum += f64::from(frame.color[pixel][3]);
+                }
+            }
             for channel in 0..3 {
                 let difference = f64::from(left[pixel][channel]) - f64::from(right[pixel][channel]);
                 *squares += difference * difference;
@@ -83,16 +92,23 @@ pub fn focus_error(reference: &Frame, frame: &Frame) -> Result<FocusError> {
         near,
         far,
         beside,
+        silhouette: (opacities[0] > 0.0).then(|| opacities[1] / opacities[0] - 1.0),
     })
 }
 
+/// The numbers of the parts.
+const IN_FOCUS: usize = 0;
+const NEAR: usize = 1;
+const FAR: usize = 2;
+const BESIDE: usize = 3;
+
 fn part_of(circle_px: f32) -> usize {
     if circle_px.abs() <= FOCUSED_PX {
-        0
+        IN_FOCUS
     } else if circle_px < 0.0 {
-        1
+        NEAR
     } else {
-        2
+        FAR
     }
 }
 

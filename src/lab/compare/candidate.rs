@@ -66,7 +66,7 @@ pub fn check(of_mode: &ModeSettings, peers: &[Peer]) -> Result<()> {
     let titles: Vec<String> = of_mode.names().into_iter().chain(of_peers).collect();
     if titles.is_empty() {
         return Err(
-            Error::usage(format!("there is no setting for mode '{}'", of_mode.mode))
+            Error::usage(format!("there is no setting for mode '{}'", of_mode.name()))
                 .hint("give it one, or leave it out of '--modes'"),
         );
     }
@@ -75,7 +75,7 @@ pub fn check(of_mode: &ModeSettings, peers: &[Peer]) -> Result<()> {
         None => Ok(()),
         Some(twice) => Err(Error::usage(format!(
             "{}: two of what is compared are called '{twice}'",
-            of_mode.mode
+            of_mode.name()
         ))
         .hint("give each setting a name of its own, and each peer once")),
     }

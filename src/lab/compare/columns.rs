@@ -12,9 +12,7 @@ type Column = (&'static str, &'static str, Shown, fn(&Row) -> Cell);
 
 /// Every figure, unit in the key; those for programs alone have titles that no table shows.
 const ALL: &[Column] = &[
-    ("mode", "mode", Shown::Short, |row| {
-        row.mode.to_string().into()
-    }),
+    ("mode", "mode", Shown::Short, |row| row.of_mode().into()),
     ("setting", "setting", Shown::Short, |row| {
         row.setting.as_str().into()
     }),
@@ -141,6 +139,7 @@ const ALL: &[Column] = &[
     NEAR_RMSE,
     FAR_RMSE,
     BESIDE_RMSE,
+    SILHOUETTE,
     ("rays", "rays", Shown::Fixed(0), |row| {
         row.counts.map(|c| c.rays).into()
     }),
@@ -260,6 +259,9 @@ const FAR_RMSE: Column = ("far_rmse", "far rmse, %", Shown::Percent(4), |row| {
 const BESIDE_RMSE: Column = ("beside_rmse", "beside rmse, %", Shown::Percent(4), |row| {
     row.error.and_then(|e| e.focus?.beside.rmse).into()
 });
+const SILHOUETTE: Column = ("silhouette", "silhouette, %", Shown::Percent(3), |row| {
+    row.error.and_then(|e| e.focus?.silhouette).into()
+});
 const SAMPLES_PER_RAY: Column = ("samples_per_ray", "samples a ray", Shown::Fixed(1), |row| {
     row.counts.map(|c| c.samples_per_ray()).into()
 });
@@ -279,7 +281,7 @@ const OF_SURFACES: &[Column] = &[WRONG_HITS, MISSED, EXTRA, DEPTH_P99];
 const OF_OCCLUDED: &[Column] = &[OCCLUSION_MEAN, OCCLUSION_BIAS];
 const OF_SHADOWS: &[Column] = &[VISIBILITY_MEAN, VISIBILITY_BIAS];
 /// And where there is a lens.
-const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE, BESIDE_RMSE];
+const OF_LENS: &[Column] = &[FOCUSED_RMSE, NEAR_RMSE, FAR_RMSE, BESIDE_RMSE, SILHOUETTE];
 const OF_PROJECTIONS: &[Column] = &[VALUE_RMSE, VALUE_MAX];
 
 /// All figures of all rows.

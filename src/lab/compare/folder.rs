@@ -10,6 +10,7 @@ use crate::scene::Mode;
 
 use super::Compared;
 use super::columns::whole_table;
+use super::look::Look;
 
 /// `DIR`, with `results.json`, `results.csv`, `report.html`, and `pictures/`.
 #[derive(Debug, Clone)]
@@ -64,13 +65,13 @@ impl Folder {
 
     /// The name within the folder, without its ending, of the pictures of a mode's candidate, whose
     /// number makes the name one of its own; of the title as much as a file's name should hold.
-    pub fn picture_name(mode: Mode, number: usize, title: &str) -> String {
+    pub fn picture_name(of_mode: &str, number: usize, title: &str) -> String {
         const MAX_LENGTH: usize = 60;
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '.';
         let words = title.split(|c| !plain(c)).filter(|word| !word.is_empty());
         let mut slug = words.collect::<Vec<_>>().join("-").to_lowercase();
         slug.truncate(MAX_LENGTH);
-        format!("{}/{mode}-{number:02}-{slug}", Self::PICTURES)
+        format!("{}/{of_mode}-{number:02}-{slug}", Self::PICTURES)
     }
 
     /// Whether a file among the pictures has a name that a comparison gives.
@@ -81,7 +82,9 @@ impl Folder {
         };
         let of = |mode: Mode| {
             let rest = name.strip_prefix(&mode.to_string())?.strip_prefix('-')?;
-            Some(number(rest))
+            let of_look = |look: Look| rest.strip_prefix(look.name())?.strip_prefix('-');
+            let looks = Look::ALL.into_iter().filter_map(of_look);
+            Some(number(rest) || looks.into_iter().any(number))
         };
         let ending = name.ends_with(".png") || name.ends_with(".exr");
         ending && Mode::ALL.into_iter().filter_map(of).any(|is| is)
@@ -136,8 +139,11 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let folder = Folder::new(place.path()).unwrap();
         folder.make().unwrap();
-        let name = Folder::picture_name(Mode::Iso, 3, &"Step 0.5, plain".repeat(30));
-        assert!(name.starts_with("pictures/iso-03-step-0.5-plain"), "{name}");
+        let name = Folder::picture_name("iso-lit", 3, &"Step 0.5, plain".repeat(30));
+        assert!(
+            name.starts_with("pictures/iso-lit-03-step-0.5-plain"),
+            "{name}"
+        );
         assert!(name.len() < 90, "{name}");
         let ours = [
             format!("{name}.png"),

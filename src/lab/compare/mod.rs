@@ -6,6 +6,7 @@ mod columns;
 mod configs;
 mod folder;
 mod front;
+mod look;
 mod mode;
 mod page;
 mod pictures;
@@ -15,6 +16,7 @@ mod timing;
 pub use columns::printed_table;
 pub use configs::Configs;
 pub use folder::Folder;
+pub use look::{Look, Preset};
 pub use mode::ModeSettings;
 pub use row::{PassMs, Row, RowFiles, RowMemory, RowTimes, Spread};
 
@@ -115,10 +117,10 @@ impl Comparison<'_> {
         renderer: &mut Renderer,
         peers: &mut [Peer],
     ) -> Result<()> {
-        let mode = of_mode.mode;
+        let (mode, key) = (of_mode.mode, of_mode.name());
         let before = compared.rows.len();
         let seen = of_mode.resolved.options.clone();
-        compared.scenes.insert(mode.to_string(), seen);
+        compared.scenes.insert(key.clone(), seen);
         let wanted = evaluated_planes(&of_mode.resolved.scene);
         let reference = (self.reference).frame(&of_mode.resolved.scene, wanted, self.progress)?;
         let mut pictures = vec![self.write_reference(&of_mode, &reference.frame)?];
@@ -126,7 +128,7 @@ impl Comparison<'_> {
         self.add_choice(&mut of_mode, compared, renderer);
         let first = compared.rows.len();
         let mut candidates = candidates(&of_mode, peers);
-        let name = format!("{mode}: pictures");
+        let name = format!("{key}: pictures");
         let stage = Stage::begin(self.progress, &name, candidates.len() as u64);
         for (number, candidate) in candidates.iter_mut().enumerate() {
             let (mut row, frame) =
@@ -166,8 +168,8 @@ impl Comparison<'_> {
         front::mark_front(mode, rows);
         let gallery = self.gallery(rows, pictures, maps)?;
         let about = self.about_mode(&of_mode, &reference);
-        let section = page::section(mode, about, rows, gallery);
-        let finding = page::finding(mode, rows);
+        let section = page::section((mode, of_mode.look), about, rows, gallery);
+        let finding = page::finding((mode, of_mode.look), rows);
         compared.sections.push(section);
         compared.findings.extend(finding);
         self.folder.write_results(&self.about, compared)
@@ -202,18 +204,18 @@ impl Comparison<'_> {
         compared: &mut Compared,
         renderer: &mut Renderer,
     ) {
-        let mode = of_mode.mode;
+        let key = of_mode.name();
         match self.choose(of_mode, renderer) {
             Ok(None) => {}
             Ok(Some(choice)) => {
-                compared.findings.push(format!("{mode}: {choice}"));
+                compared.findings.push(format!("{key}: {choice}"));
                 let stored = ToleranceStats::of(&choice);
-                compared.choices.insert(mode.to_string(), stored);
+                compared.choices.insert(key, stored);
             }
             Err(error) => {
                 let names = of_mode.names();
                 let name = names.last().map_or("max-error", String::as_str);
-                let mut row = Row::new(mode, name, OURS);
+                let mut row = Row::new(of_mode.seen_as(), name, OURS);
                 row.fail(&error);
                 compared.rows.push(row);
             }
@@ -247,7 +249,7 @@ impl Comparison<'_> {
 
     /// Writes the reference's picture; returns it as the report shows it.
     fn write_reference(&self, of_mode: &ModeSettings, frame: &Frame) -> Result<report::Picture> {
-        let name = Folder::picture_name(of_mode.mode, 0, candidate::REFERENCE);
+        let name = Folder::picture_name(&of_mode.name(), 0, candidate::REFERENCE);
         let scene = of_mode.resolved.options.to_toml()?;
         let metadata: &Metadata = &[("scene", &scene), ("version", VERSION)];
         let written = pictures::write(&self.folder, &name, frame, metadata)?;
@@ -273,7 +275,7 @@ impl Comparison<'_> {
         match candidate {
             Candidate::Setting(at) => {
                 let (setting, Resolved { scene, .. }) = &of_mode.settings[*at];
-                let mut row = Row::new(of_mode.mode, setting.name(), OURS);
+                let mut row = Row::new(of_mode.seen_as(), setting.name(), OURS);
                 row.flags = setting.flags();
                 row.family = method_label(scene);
                 let evaluation = evaluate(renderer, scene, reference, scale);
@@ -286,7 +288,7 @@ impl Comparison<'_> {
                 scene,
             } => {
                 let peer = &mut peers[*peer];
-                let mut row = Row::new(of_mode.mode, setting, &candidate::renderer_name(peer));
+                let mut row = Row::new(of_mode.seen_as(), setting, &candidate::renderer_name(peer));
                 let frame = self.ready(peer, seen, setting).and_then(|ready| {
                     row.times_ms.prepare = Some(ready.ready_ms);
                     row.note = ready.note.as_deref().map(report::without_folders);
@@ -309,7 +311,7 @@ impl Comparison<'_> {
         reference: &Frame,
         frame: &Frame,
     ) -> Result<(report::Picture, ErrorMap)> {
-        let name = Folder::picture_name(row.mode, number, &row.title());
+        let name = Folder::picture_name(&row.of_mode(), number, &row.title());
         let scale = error_scale(self.volume);
         let figures = match row.error {
             Some(figures) => figures,

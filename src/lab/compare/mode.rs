@@ -1,16 +1,20 @@
 //! A mode of a comparison: what is seen, and the settings in which it is drawn.
 
 use crate::error::Result;
-use crate::lab::measure::built_in;
+use crate::lab::measure::{accurate, built_in};
 use crate::options::{ErrorBound, Resolved, SceneOptions, Setting};
 use crate::scene::Mode;
 use crate::subject::Subject;
+
+use super::look::Look;
 
 /// A mode, what is seen in it, and the settings in which it is rendered.
 #[derive(Debug, Clone)]
 pub struct ModeSettings {
     /// What kind of picture is rendered.
     pub mode: Mode,
+    /// What of its light is shown; `None`: what the options say.
+    pub look: Option<Look>,
     /// The scene that the reference renders.
     pub resolved: Resolved,
     pub(super) settings: Vec<(Setting, Resolved)>,
@@ -35,24 +39,27 @@ impl ModeSettings {
         format!("max-error {bound}")
     }
 
-    /// The scenes of a mode: what is seen by `base`, as far as it means something in this mode,
-    /// and how by each of `settings`, which are the built-in ones if none are given.
+    /// The scenes of a mode, in a look: what is seen by `base`, as far as it means something in this mode,
+    /// and how by each of `settings`. Where none are given they are the built-in ones; of a look, whose light is what is compared,
+    /// an accurate one.
     ///
     /// # Errors
     /// Usage: the options contradict each other, or a setting cannot be combined with the mode.
     pub fn new(
-        mode: Mode,
+        (mode, look): (Mode, Option<Look>),
         base: &SceneOptions,
         settings: Option<Vec<Setting>>,
         subject: &Subject,
     ) -> Result<Self> {
-        let resolved = Self::seen(mode, base)?.resolve(subject)?;
-        let settings = match settings {
-            Some(settings) => settings,
-            None => built_in(mode)?,
+        let resolved = Self::seen(mode, look, base)?.resolve(subject)?;
+        let settings = match (settings, look) {
+            (Some(settings), _) => settings,
+            (None, None) => built_in(mode)?,
+            (None, Some(_)) => vec![accurate(mode)?],
         };
         let mut this = Self {
             mode,
+            look,
             resolved,
             settings: Vec::new(),
             bound: None,
@@ -63,12 +70,24 @@ impl ModeSettings {
         Ok(this)
     }
 
-    /// What is seen by `base` in a mode, however rays are followed.
+    /// What is seen by `base` in a mode and a look, however rays are followed.
     ///
     /// # Errors
     /// Usage: the options contradict each other.
-    pub fn seen(mode: Mode, base: &SceneOptions) -> Result<SceneOptions> {
-        base.of_mode(mode).what().checked()
+    pub fn seen(mode: Mode, look: Option<Look>, base: &SceneOptions) -> Result<SceneOptions> {
+        let base = base.of_mode(mode).what();
+        let base = look.map_or(Ok(base.clone()), |look| look.of(&base));
+        base?.checked()
+    }
+
+    /// The mode, and the look.
+    pub(super) fn seen_as(&self) -> (Mode, Option<Look>) {
+        (self.mode, self.look)
+    }
+
+    /// Its name in results and names of files: the mode's, and the look's.
+    pub fn name(&self) -> String {
+        name_of(self.mode, self.look)
     }
 
     /// Adds one setting: what `options` says, as far as it means something in the mode, of how rays
@@ -102,8 +121,16 @@ impl ModeSettings {
         let options = setting.over(&self.resolved.options).checked();
         let resolved = options.and_then(|options| options.resolve(subject));
         let resolved = resolved
-            .map_err(|error| error.at(format!("{}: setting '{}'", self.mode, setting.name())))?;
+            .map_err(|error| error.at(format!("{}: setting '{}'", self.name(), setting.name())))?;
         self.settings.push((setting, resolved));
         Ok(())
+    }
+}
+
+/// The name of a mode in a look.
+pub(super) fn name_of(mode: Mode, look: Option<Look>) -> String {
+    match look {
+        Some(look) => format!("{mode}-{look}"),
+        None => mode.to_string(),
     }
 }

@@ -8,12 +8,22 @@ use crate::lab::report::{
 use crate::scene::Mode;
 
 use super::columns::short_table;
+use super::look::Look;
+use super::mode::name_of;
 use super::row::Row;
 
 /// A mode's pictures, the reference first, its plots and its table.
-pub fn section(mode: Mode, about: String, rows: &[Row], gallery: Gallery) -> Section {
+pub fn section(
+    (mode, look): (Mode, Option<Look>),
+    about: String,
+    rows: &[Row],
+    gallery: Gallery,
+) -> Section {
     Section {
-        title: title(mode).into(),
+        title: match look {
+            Some(look) => format!("{}, {look}", title(mode)),
+            None => title(mode).into(),
+        },
         about,
         gallery: Some(gallery),
         pairs: None,
@@ -174,7 +184,7 @@ pub fn caption(mode: Mode, row: &Row) -> String {
 }
 
 /// The settings on the front of the first metric, fastest first.
-pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
+pub fn finding((mode, look): (Mode, Option<Look>), rows: &[Row]) -> Option<String> {
     let metric = RankingMetric::of_mode(mode).first()?;
     let mut front: Vec<(f64, f64, String)> = rows
         .iter()
@@ -191,9 +201,11 @@ pub fn finding(mode: Mode, rows: &[Row]) -> Option<String> {
     let settings = settings.collect::<Vec<_>>().join(", ");
     (!front.is_empty()).then(|| {
         format!(
-            "{mode}: on the Pareto front, nothing more accurate being as fast, with ms and {} ({}): \
+            "{}: on the Pareto front, nothing more accurate being as fast, with ms and {} ({}): \
              {settings}",
-            metric.title, metric.unit
+            name_of(mode, look),
+            metric.title,
+            metric.unit
         )
     })
 }
@@ -213,7 +225,7 @@ mod tests {
             scale: 1.0,
         };
         let row = |ms: f64| {
-            let mut row = Row::new(Mode::Iso, "a", "angioray");
+            let mut row = Row::new((Mode::Iso, None), "a", "angioray");
             row.timed(&[crate::lab::measure::FrameTime {
                 frame_ms: ms,
                 processor_ms: None,

@@ -9,11 +9,17 @@ use crate::lab::measure::{Counts, Evaluation, FrameTime, Times, host_peak_bytes}
 use crate::lab::report::without_folders;
 use crate::scene::Mode;
 
+use super::look::Look;
+use super::mode::name_of;
+
 /// A row of the results; what is not known yet, or cannot be, is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The mode in which the candidate was measured.
     pub mode: Mode,
+    /// What of the light is shown, where looks are compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look: Option<Look>,
     /// The candidate's name, with the renderer one of its own in the mode.
     pub setting: String,
     /// `angioray`, or a peer's name and version.
@@ -125,9 +131,10 @@ pub struct RowFiles {
 
 impl Row {
     /// A row of a candidate of which nothing is known yet.
-    pub fn new(mode: Mode, setting: &str, renderer: &str) -> Self {
+    pub fn new((mode, look): (Mode, Option<Look>), setting: &str, renderer: &str) -> Self {
         Self {
             mode,
+            look,
             setting: setting.to_owned(),
             renderer: renderer.to_owned(),
             flags: String::new(),
@@ -192,6 +199,11 @@ impl Row {
                 })
                 .collect();
         }
+    }
+
+    /// The name of the mode, and of the look, in names of files.
+    pub fn of_mode(&self) -> String {
+        name_of(self.mode, self.look)
     }
 
     /// The title for people: the setting, after a peer's name.

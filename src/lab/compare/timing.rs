@@ -24,7 +24,7 @@ impl Comparison<'_> {
             .filter(|&at| rows[at].failure.is_none())
             .collect();
         let frames = sound.len() * (self.repeats + 1);
-        let name = format!("{}: timing", of_mode.mode);
+        let name = format!("{}: timing", of_mode.name());
         let stage = Stage::begin(self.progress, &name, frames as u64);
         // One that fails now keeps its picture and says so.
         let times = rounds(&sound, self.repeats, |&at| {

@@ -36,4 +36,4 @@ pub use program::{hash_kernels, hash_program};
 pub use ranking::RankingMetric;
 pub use reference_cache::{ReferenceCache, ReferenceFrame};
 pub use sampling_check::SamplingCheck;
-pub use settings::{built_in, grid};
+pub use settings::{accurate, built_in, grid};

@@ -75,6 +75,18 @@ pub fn built_in(mode: Mode) -> Result<Vec<Setting>> {
     casts.iter().map(Keys::setting).collect()
 }
 
+/// A setting whose error cannot be seen.
+///
+/// # Errors
+/// As [`built_in`].
+pub fn accurate(mode: Mode) -> Result<Setting> {
+    let keys = match mode {
+        Mode::Dvr => ("quad", BOUNDS[1]),
+        Mode::Iso | Mode::Mip | Mode::Lmip | Mode::Minip | Mode::Mean => EXACT,
+    };
+    Keys::of(&[keys]).setting()
+}
+
 /// All that can be combined in a mode: steps, probing, refiners, rules and bounds; and with some of
 /// them the filter and the traversals, which do not depend on the rest. With `whole`, with
 /// all of them.

@@ -4,7 +4,6 @@ use crate::error::Result;
 use crate::gpu::{Args, Buffer};
 use crate::render::abi::{EmissionCast, KernelEnum, Rays};
 use crate::render::resources::{DeviceGradient, DeviceTransfer};
-use crate::scene::ShadowMethod;
 
 use super::inputs::CastInputs;
 use super::run::Run;
@@ -35,8 +34,7 @@ pub fn light_depths(
     let defines = DeviceGradient::NONE.define(run.defines());
     let defines = (off.iter())
         .fold(defines, |defines, name| defines.with(name, 0))
-        .with("RAYS", Rays::Camera.number())
-        .with("SHADOWS", Some(ShadowMethod::Exact).number());
+        .with("RAYS", Rays::Camera.number());
     let (grid, _) = run.picture()?;
     let args: Args = inputs
         .by_cells(run)

@@ -57,7 +57,7 @@ const MAX_WRONG: f64 = 0.2;
 
 fn scenes(preset: Preset) -> u64 {
     match preset {
-        Preset::Quick => 40,
+        Preset::Quick => 20,
         Preset::Usual => 200,
         Preset::Full => 1000,
     }

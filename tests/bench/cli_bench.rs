@@ -6,11 +6,12 @@ use crate::common;
 
 use cli_place::{Place, stderr};
 
-const EXPERIMENTS: [&str; 23] = [
+const EXPERIMENTS: [&str; 24] = [
     "vessels",
     "pareto",
     "speed",
     "sparse",
+    "effects",
     "sparse-rays",
     "traversals",
     "convergence",

@@ -6,6 +6,7 @@ mod cli_place;
 mod common;
 
 mod cli_bench;
+mod cli_bench_effects;
 mod cli_bench_papers;
 mod cli_bench_pareto;
 mod cli_bench_resume;

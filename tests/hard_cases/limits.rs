@@ -21,3 +21,10 @@ pub fn light(emission: &Emission) -> f64 {
         _ => 4e-3,
     }
 }
+
+/// Of light beside an edge in focus, linear, as a share of white: what a slope loses where its circles differ.
+pub const NOT_SMEARED: f64 = 0.02;
+/// Of light across a blurred edge, linear, as a share of white: what discs of pixels are off, and that loss.
+pub const BLURRED: f64 = 0.03;
+/// Of the occlusion of a plane, whose own is 0.
+pub const OCCLUDED_PLANE: f64 = 0.01;

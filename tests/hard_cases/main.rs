@@ -5,6 +5,7 @@
 mod common;
 
 mod aimed;
+mod effects;
 mod emission;
 mod isosurface;
 mod limits;
@@ -25,6 +26,7 @@ const TESTS: &[&[&str]] = &[
     emission::CASES,
     volumes::CASES,
     pixels::CASES,
+    effects::CASES,
 ];
 
 #[test]

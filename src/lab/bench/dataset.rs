@@ -7,7 +7,9 @@ use rand_pcg::Pcg64;
 use crate::error::{Error, Result};
 use crate::extent::Dims;
 use crate::options::{SceneOptions, Setting};
-use crate::scene::{Emission, Knot, Picture, Rgb, Scene, TransferFunction};
+use crate::scene::{
+    Aperture, DepthOfField, DistanceMm, Emission, Knot, Picture, Rgb, Scene, TransferFunction,
+};
 use crate::subject::{Sphere, Subject};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
@@ -117,6 +119,19 @@ impl Dataset {
         let mut scene = self.scene(side_px, "mode = 'dvr'\n")?;
         scene.picture = Picture::Emission(Emission::of(transfer));
         Ok(scene)
+    }
+
+    /// A lens before this scene's camera, focused on the median depth of what is seen: so wide that the circle of confusion of
+    /// the nearest point of the volume's sphere has this diameter in pixels where its centre is in focus.
+    pub(super) fn lens(&self, scene: &Scene, widest_px: f64) -> Result<DepthOfField> {
+        let (center, radius_mm) = self.volume.bounding_sphere();
+        let mut dof: DepthOfField = "focus=auto,aperture=1".parse()?;
+        let [grows, _] = dof.growth_px(&scene.camera, scene.size);
+        let focus_mm = (center - scene.camera.eye_world()).dot(scene.camera.forward());
+        let nearest_mm = focus_mm - radius_mm;
+        let of_one_mm = grows * (1.0 / nearest_mm - 1.0 / focus_mm);
+        dof.aperture = Aperture::Diameter(DistanceMm::new(widest_px / of_one_mm)?);
+        Ok(dof)
     }
 
     /// `n` straight vessels of one radius, in voxels, in a u8 volume of 64³ voxels of 1 mm.

@@ -10,8 +10,8 @@ use crate::volume::{Volume, write_nrrd, write_nrrd_of};
 pub struct HardCase {
     /// The case's name, as users write it.
     pub name: &'static str,
-    /// The kind of difficulty that it belongs to, 1 to 27: rays to 6, isosurface to 15,
-    /// emission and absorption to 21, volumes to 26, pixels 27.
+    /// The kind of difficulty that it belongs to: rays to 6, isosurface to 15, emission and absorption to 21, volumes to 26,
+    /// pixels and what is blurred and estimated from them 27 and 28, a lens out of focus 33.
     pub number: u32,
     /// One sentence: what is hard.
     pub about: &'static str,

@@ -8,10 +8,7 @@ use super::super::{Bench, Conditions, Dataset, Experiment, Outcome, Protocol};
 use crate::error::Result;
 use crate::lab::measure::Times;
 use crate::lab::report::{Cell, Point, Scatter, Section, Shown, Table};
-use crate::scene::{
-    Aperture, DepthOfField, DistanceMm, DofMethod, Occlusion, Phong, Picture, Reconstruction,
-    Refine, Scene, Traverse,
-};
+use crate::scene::{DofMethod, Occlusion, Phong, Picture, Reconstruction, Refine, Scene, Traverse};
 use crate::volume::PhantomKind;
 
 pub const EXPERIMENT: Experiment = Experiment {
@@ -62,14 +59,7 @@ const WIDEST_PX: f64 = 12.0;
 
 /// Blurred in two phases and mixed, as the paper's, in focus at the median depth.
 fn out_of_focus(mut scene: Scene, dataset: &Dataset) -> Result<Scene> {
-    let (center, radius_mm) = dataset.volume.bounding_sphere();
-    let mut dof: DepthOfField = "focus=auto,aperture=1".parse()?;
-    let [grows, _] = dof.growth_px(&scene.camera, scene.size);
-    let focus_mm = (center - scene.camera.eye_world()).dot(scene.camera.forward());
-    let nearest_mm = focus_mm - radius_mm;
-    let of_one_mm = grows * (1.0 / nearest_mm - 1.0 / focus_mm);
-    dof.aperture = Aperture::Diameter(DistanceMm::new(WIDEST_PX / of_one_mm)?);
-    scene.depth_of_field = Some(dof);
+    scene.depth_of_field = Some(dataset.lens(&scene, WIDEST_PX)?);
     scene.sampling.dof = DofMethod::Mix;
     Ok(scene)
 }

@@ -3,6 +3,7 @@
 
 mod check_sampling;
 mod convergence;
+mod effects;
 mod gradients;
 mod lesar_2015_figure_5;
 mod lesar_2015_figure_9;
@@ -33,6 +34,7 @@ pub const EXPERIMENTS: &[Experiment] = &[
     pareto::EXPERIMENT,
     speed::EXPERIMENT,
     sparse::EXPERIMENT,
+    effects::EXPERIMENT,
     traversals::EXPERIMENT,
     convergence::EXPERIMENT,
     rays::EXPERIMENT,

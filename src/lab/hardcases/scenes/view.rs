@@ -101,6 +101,14 @@ impl View {
         self.show(&format!("iso{iso}{open}"), &lines)
     }
 
+    /// The surface at `iso`, lit.
+    pub fn lit(&self, iso: f64, caps: bool) -> HardScene {
+        let switch = if caps { "on" } else { "off" };
+        let lines =
+            format!("mode = \"iso\"\niso = {iso:?}\ncaps = \"{switch}\"\nshading = \"phong\"\n");
+        self.show("lit", &lines)
+    }
+
     pub fn mip(&self) -> HardScene {
         self.show("mip", "mode = \"mip\"\n")
     }

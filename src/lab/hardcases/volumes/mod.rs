@@ -1,5 +1,6 @@
 //! The hard cases by kind of difficulty, each with its volumes and its scenes.
 
+mod effects;
 mod emission;
 mod grid;
 mod isosurface;
@@ -14,12 +15,13 @@ use super::HardCase;
 use crate::volume::Geometry;
 
 /// All cases, by number.
-pub(super) const CASES: [&[HardCase]; 5] = [
+pub(super) const CASES: [&[HardCase]; 6] = [
     rays::CASES,
     isosurface::CASES,
     emission::CASES,
     kinds::CASES,
     pixels::CASES,
+    effects::CASES,
 ];
 
 /// Spacing 1 mm, origin 0, the world's axes: world and index space are one.

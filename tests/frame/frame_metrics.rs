@@ -6,7 +6,7 @@ use angioray::frame::error::{
     PartError, Scale, color_error, depth_error, figures, flip, focus_error, normal_error,
     share_error, ssim, value_error,
 };
-use angioray::frame::{COC, DEPTH, Frame, Layers, NORMAL, OCCLUSION, VALUE, VISIBILITY};
+use angioray::frame::{COC, DEPTH, Frame, KIND, Layers, NORMAL, OCCLUSION, VALUE, VISIBILITY};
 
 fn picture(width: u32, height: u32, at: impl Fn(i64, i64, i64) -> f64) -> Frame {
     let size = ImageSize::new(width, height).unwrap();
@@ -60,6 +60,11 @@ fn shares_of_light_are_compared_where_both_cover() {
     // The other way round it is as far, and too bright.
     let error = share_error(&frame, &reference, OCCLUSION).unwrap();
     assert_eq!((error.mean, error.bias), (Some(0.125), Some(-0.125 / 3.0)));
+    // Of what is nearly clear nothing is known, where there are kinds.
+    let mut known = frame.clone();
+    known.layers.insert(KIND, vec![1, 0, 1, 1]);
+    let error = share_error(&reference, &known, OCCLUSION).unwrap();
+    assert_eq!((error.compared, error.bias), (2, Some(0.125)));
     // Another plane of shares is another.
     assert!(share_error(&reference, &frame, VISIBILITY).is_err());
     // Where nothing is to be compared there is no figure; without the plane there is an error.

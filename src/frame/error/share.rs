@@ -6,12 +6,13 @@ use crate::error::Result;
 
 use super::entry::{Entry, Tally};
 use super::pairing::{both, comparable, finite};
-use crate::frame::{Frame, Key};
+use crate::frame::{Frame, KIND, Key, Kind};
 
-/// Differences of a plane of shares, from 0 to 1, over pixels that both cover (colour's alpha > 0).
+/// Differences of a plane of shares, from 0 to 1, over pixels in which both meet something: a kind, or, of a picture without kinds,
+/// an opacity above 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShareError {
-    /// Pixels that both cover.
+    /// Pixels in which both meet something.
     pub compared: u64,
     /// The mean absolute difference; `None` if no pixel was compared.
     pub mean: Option<f64>,
@@ -31,7 +32,10 @@ pub fn share_error(reference: &Frame, frame: &Frame, key: Key<f32>) -> Result<Sh
     let name = key.layer().name();
     let size = comparable(reference, frame)?;
     let (left, right) = both(reference, frame, name, |f| f.plane(key))?;
-    let covers = |frame: &Frame, pixel: usize| frame.color[pixel][3] > 0.0;
+    let covers = |frame: &Frame, pixel: usize| match frame.plane(KIND) {
+        Some(kinds) => kinds[pixel] != Kind::Nothing as u32,
+        None => frame.color[pixel][3] > 0.0,
+    };
     let entry = |(pixel, (&a, &b)): (usize, (&f32, &f32))| {
         Entry::of(covers(reference, pixel), covers(frame, pixel), || {
             finite(f64::from(b) - f64::from(a), name, size, pixel)

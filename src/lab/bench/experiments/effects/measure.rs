@@ -59,6 +59,7 @@ impl From<FocusError> for FocusRmse {
             near,
             far,
             beside,
+            ..
         } = error;
         let parts = [in_focus, near, far, beside];
         let pixels: u64 = parts.iter().map(|part| part.pixels).sum();
@@ -195,6 +196,7 @@ mod tests {
                 near: none,
                 far,
                 beside: none,
+                silhouette: None,
             })
         };
         let rmse = of(part(30, Some(0.1)), part(10, Some(0.3)));

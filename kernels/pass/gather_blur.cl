@@ -254,7 +254,8 @@ static inline Floats4 seen_by_lens(const Tile *tile, Taps taps, BlurredLayer see
     light.x = kept ? own.x : light.x * scale + through * own.x;
     light.y = kept ? own.y : light.y * scale + through * own.y;
     light.z = kept ? own.z : light.z * scale + through * own.z;
-    light.w = kept ? own.w : light.w * scale + through * own.w;
+    // Sums of shares that make up all of the lens round to more.
+    light.w = kept ? own.w : min_of(light.w * scale + through * own.w, FLOATS(1.0f));
     return light;
 }
 

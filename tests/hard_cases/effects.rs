@@ -297,14 +297,24 @@ fn a_sheet_in_focus_keeps_the_pinholes_bits() {
     let mut behind = scene.clone();
     behind.depth_of_field = Some("focus=80,aperture=8".parse().unwrap());
     assert!(bits_changed(&volume, &behind).unwrap()[0] > 0);
-    // What is in focus gathered like all else.
+    // What is in focus gathered like all else, and what lies behind it smeared over it.
     assert_caught(
         "effects::a_sheet_in_focus_keeps_the_pinholes_bits",
-        "lib/ray/blur.clh",
-        &[(
-            "return fabs(circle) <= FOCUSED_PX;",
-            "return fabs(circle) < 0.0f;",
-        )],
+        "pass/gather_blur.cl",
+        &[
+            (
+                "if (!ANY(!tile->focused | by_seen.before_own + by_hidden.before_own > 0.0f))",
+                "if (0)",
+            ),
+            (
+                "Mask kept = tile->focused & nearer == 0.0f;",
+                "Mask kept = NO_LANE;",
+            ),
+            (
+                "gives *= tile->focused ? share_in_focus : share;",
+                "gives *= share;",
+            ),
+        ],
     );
 }
 

@@ -26,5 +26,5 @@ pub fn light(emission: &Emission) -> f64 {
 pub const NOT_SMEARED: f64 = 0.02;
 /// Of light across a blurred edge, linear, as a share of white: what discs of pixels are off, and that loss.
 pub const BLURRED: f64 = 0.03;
-/// Of the occlusion of a plane, whose own is 0.
-pub const OCCLUDED_PLANE: f64 = 0.01;
+/// Of the occlusion of a plane, whose own is 0: what is seen hides less than that where it lies that near the tangent plane.
+pub const OCCLUDED_PLANE: f64 = 1e-3;

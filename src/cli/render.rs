@@ -33,7 +33,7 @@ use super::tolerance::choose;
   angioray render head.nrrd -o lit.png --light camera:-1,1,1@ivory --light point:40,-90,60@0.5
   angioray render head.nrrd -o fog.png --mode dvr --shading phong --shade-from 5%
   angioray render head.nrrd -o soft.png --ao rays=16,distance=5
-  angioray render head.nrrd -o soft.exr --ao bound=0.1,distance=5 --size 128 --aov occlusion,occlusion_bound
+  angioray render head.nrrd -o soft.exr --ao bound=0.1,distance=5 --size 128 --aov all
   angioray render head.nrrd -o shadow.png --shadows on --light-size 5 --light camera:-1,1,1
   angioray render head.nrrd -o near.png --dof focus=percentile:20,aperture=2
   angioray render head.nrrd -o near.png --dof focus=auto,aperture=2,darken=0.5 --dof-method lens:16

@@ -330,6 +330,7 @@ fn many_rays_in_a_pixel_are_occluded_as_their_neighbours_are() {
     let mut renderer = Renderer::new(&device, &volume, &octree, Options::default()).unwrap();
     // What rays beside centres take from these adds little to what is wrong of the centres' own.
     let mut one = scene(&volume, "radius=8");
+    one.size = ImageSize::new(80, 80).unwrap();
     if let Picture::Surface { phong, .. } = &mut one.picture {
         *phong = Some(Phong {
             ambient: Reflectance::OCCLUDED,

@@ -5,6 +5,7 @@
 // a bit per cell in which something absorbs. Writes light_depths from `first` on: `side` layers of side * side numbers, spacing_mm
 // apart along the view axis, the first nearest_mm from the eye.
 #define SHADOWS SHADOWS_EXACT
+#define LAYERS 0
 #include "lib/light/feeler.clh"
 #include "lib/ray/camera.clh"
 

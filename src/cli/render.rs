@@ -151,19 +151,7 @@ pub fn draw(drawing: Drawing<'_>) -> Result<()> {
         times_ms.render,
         rendered.device.name
     ));
-    print_certificate(&rendered.frame, &resolved);
-    if let Some(reached) = reached(&drawing, &rendered.frame, &resolved) {
-        message(bound_line(&reached));
-    }
-    if let Some(check) = &rendered.sample_check {
-        message(check_line(check));
-    }
-    if let Some(focus_mm) = rendered.focus_mm {
-        message(format!(
-            "focus: {} mm from the eye along the view axis",
-            concise(focus_mm)
-        ));
-    }
+    print_findings(&drawing, &rendered, &resolved);
     if let Some(check) = &check {
         message(sampling_check::line(check, resolved.scene.picture.mode()));
     }
@@ -211,6 +199,24 @@ fn print_certificate(frame: &Frame, resolved: &Resolved) {
         message(format_args!(
             "certificate: {undecided} of {pixels} pixels undecided, a share of {:.1e}",
             undecided as f64 / pixels as f64
+        ));
+    }
+}
+
+/// Says what is known of the picture: how much of it is proven, how near to the truth its occlusion and its means of rays are, and
+/// where it is in focus.
+fn print_findings(drawing: &Drawing<'_>, rendered: &Rendered, resolved: &Resolved) {
+    print_certificate(&rendered.frame, resolved);
+    if let Some(reached) = reached(drawing, &rendered.frame, resolved) {
+        message(bound_line(&reached));
+    }
+    if let Some(check) = &rendered.sample_check {
+        message(check_line(check));
+    }
+    if let Some(focus_mm) = rendered.focus_mm {
+        message(format!(
+            "focus: {} mm from the eye along the view axis",
+            concise(focus_mm)
         ));
     }
 }

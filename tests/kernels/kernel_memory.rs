@@ -214,7 +214,8 @@ fn no_pass_reads_or_writes_outside_its_buffers_or_races() {
         for (m, mode) in of_modes.chain(of_counts) {
             // Filters take turns, but for what needs gradients, and so do all layers and none but the display's.
             let turn = (v / 3 + m / 3) % 2;
-            let needs_linear = ["--ao", "--ssao"].iter().any(|flag| mode.contains(flag));
+            let of_surface = ["--ao", "--ssao", "--iso 40% --shadows"];
+            let needs_linear = of_surface.iter().any(|flags| mode.contains(flags));
             let filter = ["linear", "nearest"][if needs_linear { 0 } else { turn }];
             let (layers, extension) = [("--aov all", "exr"), ("", "png")][(v / 3 + m / 6) % 2];
             let arguments = format!("{mode} --filter {filter} {layers} {VIEW}");

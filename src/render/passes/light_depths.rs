@@ -30,7 +30,7 @@ pub fn light_depths(
     layers: GridLayers,
     depths: &mut Buffer<f32>,
 ) -> Result<()> {
-    let off = ["SHADED", "LAYERS", "NORMALS", "VISIBILITY", "JITTERED"];
+    let off = ["SHADED", "NORMALS", "VISIBILITY", "JITTERED"];
     let defines = DeviceGradient::NONE.define(run.defines());
     let defines = (off.iter())
         .fold(defines, |defines, name| defines.with(name, 0))

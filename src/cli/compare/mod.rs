@@ -34,7 +34,7 @@ use reference_cache::reference_cache;
 #[command(after_help = "Example:
   angioray compare head.nrrd -o head
   angioray compare cta.nii.gz -o cta --modes iso,dvr --iso 150 --tf cta --azimuth 30
-  angioray compare head.nrrd -o head --preset lighting --iso 150 --size 512
+  angioray compare head.nrrd -o head --preset lighting --modes iso --iso 150
   angioray compare head.nrrd -o head --modes mip --configs steps.toml --repeats 9
   angioray compare head.nrrd -o head --peer 'target/peers-venv/bin/python scripts/peers/vtk_peer.py'
 

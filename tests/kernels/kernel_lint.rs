@@ -111,20 +111,50 @@ const UNUSED: [&str; 3] = [
     "unused-parameter",
 ];
 
-/// What is wrong with a file, over all its builds.
-fn wrong(clang: &Path, file: &Path, builds: &[Build]) -> Vec<String> {
-    let mut wrong = Vec::new();
+/// What clang says of a file, over all its builds.
+struct OfFile {
+    complaints: Vec<String>,
+    /// What none of its builds uses.
+    never_used: BTreeSet<String>,
+}
+
+fn lint_all(clang: &Path, file: &Path, builds: &[Build]) -> OfFile {
+    let mut complaints = Vec::new();
     let mut never_used: Option<BTreeSet<String>> = None;
     for build in builds {
         let Verdict { complaint, unused } = lint(clang, file, build);
-        wrong.extend(complaint.map(|text| format!("{build:?}:\n{text}")));
+        complaints.extend(complaint.map(|text| format!("{build:?}:\n{text}")));
         never_used = Some(match never_used {
             None => unused,
             Some(before) => before.intersection(&unused).cloned().collect(),
         });
     }
-    wrong.extend(never_used.into_iter().flatten());
-    wrong
+    OfFile {
+        complaints,
+        never_used: never_used.unwrap_or_default(),
+    }
+}
+
+/// What is wrong, of files with their whole texts: complaints, and what no file uses that includes it.
+fn wrong(files: &[(String, OfFile)]) -> Vec<String> {
+    let is_used = |warning: &str| {
+        let library = warning.find("/lib/").zip(warning.find(".clh:"));
+        let Some(path) = library.and_then(|(from, to)| warning.get(from + 1..to + 4)) else {
+            return false;
+        };
+        let includes = format!("\"kernels/{path}\"");
+        let uses = |(text, of_file): &(String, OfFile)| {
+            text.contains(&includes) && !of_file.never_used.contains(warning)
+        };
+        files.iter().any(uses)
+    };
+    let complaints = files.iter().flat_map(|(_, of_file)| &of_file.complaints);
+    let never_used: BTreeSet<&String> = files
+        .iter()
+        .flat_map(|(_, of_file)| &of_file.never_used)
+        .collect();
+    let never_used = never_used.into_iter().filter(|warning| !is_used(warning));
+    complaints.chain(never_used).cloned().collect()
 }
 
 /// Names and values of the constants among a compiler's options.
@@ -277,19 +307,19 @@ fn every_variant_of_every_kernel_is_without_a_warning() {
         return;
     };
     let paths: Vec<&str> = ["pass/", "test/"].into_iter().flat_map(files_in).collect();
-    let found: Vec<String> = thread::scope(|scope| {
+    let files: Vec<(String, OfFile)> = thread::scope(|scope| {
         let workers: Vec<_> = paths
             .iter()
             .map(|path| {
                 let clang = &clang;
-                scope.spawn(move || wrong(clang, &kernels().join(path), &builds(path)))
+                scope.spawn(move || lint_all(clang, &kernels().join(path), &builds(path)))
             })
             .collect();
-        workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap())
-            .collect()
+        let found = workers.into_iter().map(|worker| worker.join().unwrap());
+        let texts = paths.iter().map(|path| flatten(path).unwrap());
+        texts.zip(found).collect()
     });
+    let found = wrong(&files);
     assert!(
         found.is_empty(),
         "{} times: {}",
@@ -449,8 +479,8 @@ fn clang_refuses_what_is_wrong() {
         let text = format!(
             "#include \"lib/abi.clh\"\nkernel void wrong(global float *v)\n{{\n{body}\n}}\n"
         );
-        std::fs::write(&file, text).unwrap();
-        wrong(&clang, &file, &[build(variant)])
+        std::fs::write(&file, &text).unwrap();
+        wrong(&[(text, lint_all(&clang, &file, &[build(variant)]))])
     };
     let refused = |body: &str, variant: &str, by: &str| {
         let found = found(body, variant);
@@ -477,6 +507,26 @@ fn clang_refuses_what_is_wrong() {
         &variant,
         "lerp_of_nothing",
     );
+}
+
+#[test]
+fn what_any_file_uses_of_the_library_is_used() {
+    let warning =
+        "/somewhere/kernels/lib/ray/a.clh:3:5: warning: unused parameter 'x' [-Wunused-parameter]";
+    let including = |is_unused: bool| {
+        let never_used = is_unused.then(|| warning.to_owned()).into_iter().collect();
+        let of_file = OfFile {
+            complaints: Vec::new(),
+            never_used,
+        };
+        ("#line 1 \"kernels/lib/ray/a.clh\"\n".to_owned(), of_file)
+    };
+    assert!(wrong(&[including(true), including(false)]).is_empty());
+    assert_eq!(wrong(&[including(true), including(true)]), [warning]);
+    // A file that does not include it does not use it.
+    let mut other = including(false);
+    other.0.clear();
+    assert_eq!(wrong(&[including(true), other]), [warning]);
 }
 
 /// What is wrong with the order of one kernel file, as text.

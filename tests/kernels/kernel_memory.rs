@@ -174,7 +174,7 @@ const RAY_COUNTS: [&str; 21] = [
     "--mode iso --iso 40% --aa 2 --ao rays=2,distance=3",
     "--mode iso --iso 40% --ao bound=0.4,distance=2 --clip-plane 1,0,0,-2",
     "--mode iso --iso 40% --shadows on --light 1,1,1 --light point:40,5,9",
-    "--mode dvr --shading phong --shadows cached:5 --light 1,1,1 --light point:40,5,9",
+    "--mode dvr --shading phong --quad midpoint --step 3 --shadows cached:4 --light 1,1,1",
     "--mode iso --iso 40% --aa 2 --ssao radius=6,samples=8",
     "--mode iso --iso 40% --sparse 4:0.1 --ssao radius=6,samples=8,thickness=2",
     "--mode dvr --dof focus=auto,aperture=2,darken=1 --dof-method lens:2",

@@ -38,6 +38,8 @@ use super::tolerance::choose;
   angioray render head.nrrd -o near.png --dof focus=percentile:20,aperture=2
   angioray render head.nrrd -o near.png --dof focus=auto,aperture=2,darken=0.5 --dof-method lens:16
   angioray render head.nrrd -o soft.png --ssao radius=5
+  angioray render head.nrrd -o far.png --cue fog:0.7 --cue halo:0.8 --background white
+  angioray render head.nrrd -o depth.png --cue chromadepth:1,ramp=red-white-blue,steps=8 --mode mip
   angioray render head.nrrd -o film.png --mode mip --window p99.9,p1 --background white
   angioray render head.nrrd -o head.png --aa 4:adaptive
   angioray render head.nrrd -o head.png --mode dvr --step 2 --jitter interleaved:4 --check-sampling

@@ -125,10 +125,12 @@ impl Loaded {
         self.volume.content_hash().to_hex().to_string()
     }
 
-    /// Measures what pictures show of the volume, where their cameras depend on it: one sphere for all that
+    /// Measures what pictures show of the volume, where their cameras or depth cues depend on it: one sphere for all that
     /// are made of these options.
     pub fn frame(&mut self, pictures: &[SceneOptions]) -> Result<()> {
-        let framed = pictures.iter().filter(|options| options.fits_content());
+        let framed = pictures
+            .iter()
+            .filter(|options| options.depends_on_content());
         let shown = framed.map(|options| options.shown(&self.subject));
         let shown = shown.collect::<Result<Vec<_>>>()?;
         if !shown.is_empty() {

@@ -5,7 +5,8 @@ use super::group::Keys;
 use super::rules::{Group, Need, unmet};
 use super::{SceneOptions, TransferChoice};
 use crate::error::{Error, Result};
-use crate::scene::{Light, Mode, SamplingMethod};
+use crate::extent::ImageSize;
+use crate::scene::{DepthCues, Light, Mode, SamplingMethod};
 
 /// The order in which needs are checked: that an option belongs to another mode says more than that
 /// something else is missing.
@@ -37,6 +38,11 @@ impl SceneOptions {
             .hint("leave one of both out: quad adaptive is dvr's exact sampling"));
         }
         self.sampling.sparse_in(self.mode())?;
+        self.effects.check_cues(self.mode())?;
+        DepthCues::filled_in(
+            self.effects.cue.as_deref().unwrap_or_default(),
+            ImageSize::DEFAULT,
+        )?;
         if let Some(shadows) = self.effects.cast_shadows() {
             shadows.check(self.mode())?;
         }
@@ -86,6 +92,7 @@ impl SceneOptions {
             Need::Homogeneity => self.picture.homogeneity.is_some(),
             Need::Sparse => self.sampling.is_sparse(),
             Need::Lens => self.effects.dof.is_some(),
+            Need::Cues => self.effects.cue.is_some(),
             Need::Shadows => self.effects.shadows.is_some(),
             // Of options beside the scene.
             Need::OpenCl
@@ -134,6 +141,9 @@ impl SceneOptions {
             )),
             Need::Lens => Error::usage(format!(
                 "'{option}' has no effect without 'dof': a pinhole has no lens"
+            )),
+            Need::Cues => Error::usage(format!(
+                "'{option}' has no effect without 'cue': no colour depends on the depth"
             )),
             Need::Shadows => Error::usage(format!(
                 "'{option}' has no effect without 'shadows': hard or soft, none are cast"

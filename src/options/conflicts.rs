@@ -115,6 +115,16 @@ pub(super) const CONTRADICTIONS: &[Contradiction] = &[
         hint: "leave one of the two out: 'ao' follows rays, 'ssao' looks at the picture",
     },
     Contradiction {
+        is_in: |all| all.effects.dof.is_some() && all.effects.draws_edges(),
+        sentence: "'dof' cannot be combined with the cues halo and contour, which are drawn at sharp edges",
+        hint: "leave one of them out; fog and chromadepth go with 'dof'",
+    },
+    Contradiction {
+        is_in: |all| all.effects.cue.is_some() && is_certified(all) && all.mode() != Mode::Iso,
+        sentence: "'cue' cannot be combined with certified pixels but in mode iso: their colours are within an error, their depths are not",
+        hint: "choose refill gradient or flood, or leave 'cue' out",
+    },
+    Contradiction {
         is_in: |all| averages(all) && all.picture.is_shaded(),
         sentence: "'homogeneity' cannot be combined with shading: normals differ inside a node",
         hint: "choose shading none, or leave homogeneity out",
@@ -144,6 +154,12 @@ fn is_precomputed(options: &SceneOptions) -> bool {
 /// Whether the averages of nodes are used.
 fn averages(options: &SceneOptions) -> bool {
     options.mode() == Mode::Dvr && options.picture.homogeneity.is_some()
+}
+
+/// Whether pixels without rays are proven to be within an error.
+fn is_certified(options: &SceneOptions) -> bool {
+    let sampling = &options.sampling;
+    sampling.screen_error.is_some() || sampling.refill == Some(Refill::Certified)
 }
 
 /// Whether the march toward a surface takes the nearest voxels.
@@ -276,6 +292,26 @@ pub(super) const REPLACED: &[Replaced] = &[
     Replaced {
         by: |flags, _| flags.effects.ssao.is_some(),
         options: &["ao"],
+    },
+    // Sharp edges and a lens replace each other.
+    Replaced {
+        by: |flags, file| flags.effects.dof.is_some() && file.effects.draws_edges(),
+        options: &["cue", "cue-range"],
+    },
+    Replaced {
+        by: |flags, _| flags.effects.draws_edges(),
+        options: &["dof", "dof-method"],
+    },
+    // So do colours by depths and depths that are within no error.
+    Replaced {
+        by: |flags, file| is_certified(flags) && !is_surface(flags, file),
+        options: &["cue", "cue-range"],
+    },
+    Replaced {
+        by: |flags, file| {
+            flags.effects.cue.is_some() && is_certified(file) && !is_surface(flags, file)
+        },
+        options: &["screen-error", "refill"],
     },
     Replaced {
         by: |flags, file| is_exact(flags) && file.sampling.voxels == Some(Storage::Filtered),

@@ -2,14 +2,19 @@
 
 use super::group::group;
 use super::text_form::text_form;
+use crate::error::{Error, Result};
+use crate::extent::ImageSize;
 use crate::scene::{
-    AmbientOcclusion, DepthOfField, DofMethod, LightSizeDeg, Occlusion, Phong, Reflectance,
-    ScreenOcclusion, ShadowMethod, Shadows,
+    AmbientOcclusion, Camera, DepthCue, DepthCues, DepthOfField, DepthRange, DofMethod,
+    LightSizeDeg, Mode, Occlusion, Phong, Reflectance, ScreenOcclusion, ShadowMethod, Shadows,
 };
+use crate::subject::Sphere;
 
 text_form!(
     AmbientOcclusion,
+    DepthCue,
     DepthOfField,
+    DepthRange,
     DofMethod,
     LightSizeDeg,
     ScreenOcclusion,
@@ -71,6 +76,20 @@ group! {
         /// of the lens, up to 1024
         #[arg(long, value_name = "gather|mix|lens:N", allow_hyphen_values = true)]
         dof_method: DofMethod,
+
+        /// What tells near from far, once of each kind, S from 0 to 1: fog:S, what is far away fades into the
+        /// background; chromadepth:S, colours from red, near, to blue, far, with ramp=full or red-white-blue,
+        /// steps=N to tell only N depths apart, rim=P to colour only where normals turn away (iso, dvr), the
+        /// less the larger P; halo:S, what is far away is dark around what is near; contour:S, what is in
+        /// front of something is outlined; both with width=PX [default of PX: as suits the picture's height]
+        #[arg(long, value_name = "KIND:S[,KEY=VALUE]", allow_hyphen_values = true)]
+        #[serde(deserialize_with = "super::text_form::one_or_more")]
+        cue: Vec<DepthCue>,
+
+        /// The distances from the eye, in mm, between which near is told from far; of an orthographic camera
+        /// those from the eye plane
+        #[arg(long, value_name = "NEAR,FAR", allow_hyphen_values = true)]
+        cue_range: DepthRange,
     }
 }
 
@@ -92,6 +111,64 @@ impl EffectOptions {
             method,
             light_size: self.light_size.unwrap_or_default(),
         })
+    }
+
+    /// Whether a cue is asked for that is drawn where depths of neighbouring pixels differ.
+    pub(super) fn draws_edges(&self) -> bool {
+        let is_drawn = |cue: &DepthCue| matches!(cue, DepthCue::Halo(_) | DepthCue::Contour(_));
+        self.cue.iter().flatten().any(is_drawn)
+    }
+
+    /// Refuses cues that the mode has not.
+    ///
+    /// # Errors
+    /// Usage: a colour at the rim of things in a mode without normals.
+    pub(super) fn check_cues(&self, mode: Mode) -> Result<()> {
+        let at_rims = |cue: &DepthCue| matches!(cue, DepthCue::Chromadepth(c) if c.rim.is_some());
+        if mode.is_lit() || !self.cue.iter().flatten().any(at_rims) {
+            return Ok(());
+        }
+        Err(Error::usage(format!(
+            "'cue' chromadepth cannot have a 'rim' in mode '{mode}': a projection has no normals"
+        ))
+        .hint("leave 'rim' out, or choose mode iso or dvr"))
+    }
+
+    /// Returns these options without what of the cues needs normals.
+    #[must_use]
+    pub(super) fn without_rims(mut self) -> Self {
+        for cue in self.cue.iter_mut().flatten() {
+            if let DepthCue::Chromadepth(colors) = cue {
+                colors.rim = None;
+            }
+        }
+        self
+    }
+
+    /// Makes the depth cues of a camera's picture, and the options that make the same: without a range the one from the
+    /// nearest to the farthest point of `content`.
+    ///
+    /// # Errors
+    /// As [`DepthCues::new`], [`DepthRange::of_sphere`] and [`Self::check_cues`].
+    pub(super) fn resolve_cues(
+        &mut self,
+        mode: Mode,
+        camera: &Camera,
+        size: ImageSize,
+        content: Sphere,
+    ) -> Result<Option<DepthCues>> {
+        let Some(cues) = &self.cue else {
+            return Ok(None);
+        };
+        self.check_cues(mode)?;
+        let range = match self.cue_range {
+            Some(range) => range,
+            None => DepthRange::of_sphere(content, camera)?,
+        };
+        let resolved = DepthCues::new(cues, range, size)?;
+        self.cue = Some(DepthCues::filled_in(cues, size)?);
+        self.cue_range = Some(range);
+        Ok(Some(resolved))
     }
 
     /// Returns what dims the light from everywhere, and how it is found.

@@ -65,6 +65,7 @@ fn label(rule: &Rule) -> Option<String> {
         Need::Homogeneity => Some("with --homogeneity".to_owned()),
         Need::Sparse => Some("with --sparse".to_owned()),
         Need::Lens => Some("with --dof".to_owned()),
+        Need::Cues => Some("with --cue".to_owned()),
         Need::Shadows => Some("with --shadows".to_owned()),
         _ => None,
     });

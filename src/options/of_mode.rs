@@ -21,6 +21,9 @@ impl SceneOptions {
             })
         };
         let mut options = all.clone().retaining(goes_with_mode);
+        if !mode.is_lit() {
+            options.effects = options.effects.without_rims();
+        }
         // Of both, the quadrature says more of how an integral is sampled.
         let quad = options.picture.quad.map(|quad| quad.sampling());
         if quad.is_some() {
@@ -53,6 +56,9 @@ mod tests {
         ("ambient = 0.3\nshading = 'phong'", Mode::Dvr, "ambient = 0.3\nshading = 'phong'"),
         ("ambient = 0.3\nshading = 'none'", Mode::Iso, "shading = 'none'"),
         ("ambient = 0.3\nshading = 'phong'", Mode::Mip, ""),
+        ("cue = ['fog:1', 'chromadepth:1,rim=2']", Mode::Iso, "cue = ['fog:1', 'chromadepth:1,rim=2']"),
+        ("cue = ['fog:1', 'chromadepth:1,rim=2']", Mode::Mip, "cue = ['fog:1', 'chromadepth:1']"),
+        ("cue = 'fog:1'\ncue-range = [10, 20]", Mode::Mean, ""),
         ("step = 2\nprobe = 'off'", Mode::Mip, "step = 2\nprobe = 'off'"),
         ("step = 2\nprobe = 'off'", Mode::Dvr, "step = 2"),
         ("sampling = 'exact'\nquad = 'simpson'", Mode::Dvr, "quad = 'simpson'"),

@@ -79,6 +79,11 @@ mod tests {
             ("ssao = 'radius=5'", "filter = 'nearest'"),
             ("ssao = 'radius=5'", "ao = 'distance=5'"),
             ("shadows = 'on'", "filter = 'nearest'"),
+            ("cue = 'halo:1'", "dof = 'focus=auto,aperture=1'"),
+            (
+                "mode = 'mip'\ncue = 'fog:1'",
+                "mode = 'mip'\nscreen-error = 0.1",
+            ),
             (averaged, "mode = 'dvr'\nshading = 'phong'"),
             (averaged, "mode = 'dvr'\nquad = 'adaptive'"),
             (

@@ -6,8 +6,8 @@ use super::rules::{Need, needs};
 use super::to_picture::ResolvedPicture;
 use super::triple::Triple;
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Mode, Quadrature, QuadratureMethod, SamplingMethod, Scene};
-use crate::subject::Subject;
+use crate::scene::{Camera, DepthRange, Mode, Quadrature, QuadratureMethod, SamplingMethod, Scene};
+use crate::subject::{Sphere, Subject};
 
 /// A scene, the options that make it, and what was chosen for the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Resolved {
     pub options: SceneOptions,
     /// One sentence each about a default or computed value which the user may want to know.
     pub notes: Vec<String>,
+    /// What depth cues range over, where they were given no range: as much of this sphere as each camera has before it.
+    cued: Option<Sphere>,
 }
 
 impl Resolved {
@@ -26,6 +28,12 @@ impl Resolved {
     #[must_use]
     pub fn seen_by(&self, camera: Camera) -> Self {
         let mut seen = self.clone();
+        if let (Some(sphere), Some(cues)) = (self.cued, &mut seen.scene.depth_cues)
+            && let Ok(range) = DepthRange::of_sphere(sphere, &camera)
+        {
+            cues.range = range;
+            seen.options.effects.cue_range = Some(range);
+        }
         seen.scene.camera = camera;
         seen.options.camera.eye = Some(Triple(camera.eye_world()));
         seen.options.camera.up = Some(Triple(camera.up_given()));
@@ -81,7 +89,8 @@ impl SceneOptions {
         let (mut sampling, mut of_sampling) = given.sampling.resolve(method, picture.mode());
         let sparse = of_sampling.resolve_sparse(picture.mode())?;
         let (tone, of_tone) = given.tone.resolve();
-        let effects = given.effects.resolve();
+        let mut effects = given.effects.resolve();
+        let depth_cues = effects.resolve_cues(picture.mode(), &camera, size, subject.content)?;
         if let Some(dof) = effects.dof {
             dof.check(camera.lens(), size)?;
         }
@@ -98,6 +107,7 @@ impl SceneOptions {
             shadows: effects.cast_shadows(),
             ambient_occlusion: effects.occlusion(),
             depth_of_field: effects.dof,
+            depth_cues,
             gradient,
             tone,
         };
@@ -118,6 +128,7 @@ impl SceneOptions {
             scene,
             options,
             notes,
+            cued: (self.effects.cue_range.is_none()).then_some(subject.content),
         })
     }
 
@@ -227,6 +238,7 @@ mod tests {
                 Need::Homogeneity => text.push_str("homogeneity = 0.1\n"),
                 Need::Shadows => text.push_str("shadows = 'on'\n"),
                 Need::Lens => text.push_str("dof = 'focus=auto,aperture=1'\n"),
+                Need::Cues => text.push_str("cue = 'fog:1'\n"),
                 _ => {}
             }
         }

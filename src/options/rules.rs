@@ -69,6 +69,8 @@ pub(crate) enum Need {
     Sparse,
     /// Depth of field.
     Lens,
+    /// Depth cues.
+    Cues,
     /// Shadows.
     Shadows,
     /// An OpenCL device: the reference has none.
@@ -114,6 +116,10 @@ const PEAKED: &[Mode] = &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Minip];
 
 const LIGHT: Need = Need::Modes(LIT, "a projection has no surface to light");
 const NORMALS: Need = Need::Modes(LIT, "a projection has no normals");
+const CUED: Need = Need::Modes(
+    &[Mode::Iso, Mode::Mip, Mode::Lmip, Mode::Dvr],
+    "what it shows lies all along the ray",
+);
 const FOCUSES: Need = Need::Modes(LIT, "a projection has no depth to focus on");
 const OCCLUDES: Need = Need::Modes(ISO, "only a surface is in the way of light from everywhere");
 const AVERAGED: Need = Need::Modes(DVR, "only dvr takes a node for its average");
@@ -253,6 +259,10 @@ pub(crate) const RULES: &[Rule] = &[
         .default(|| "none, a pinhole".to_owned()),
     scene("dof-method", How, &[FOCUSES, Need::Lens])
         .default(text::<DofMethod>),
+    scene("cue", What, &[CUED])
+        .default(|| "none".to_owned()),
+    scene("cue-range", What, &[CUED, Need::Cues])
+        .default(|| "what of the sphere around all that the picture can show lies in front of the eye".to_owned()),
     scene("gradient", How, &[NORMALS, Need::Normals])
         .default(text::<GradientMethod>),
     scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE])

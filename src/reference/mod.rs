@@ -124,6 +124,8 @@ struct Seer<'a> {
     tracer: Tracer<'a>,
     scene: &'a Scene,
     lens: Option<FocusedLens>,
+    /// The depths of all pixels, mm, where colours depend on those beside them.
+    depths_mm: Option<Vec<f64>>,
 }
 
 /// Rays of a pixel through the lens.
@@ -139,13 +141,22 @@ impl<'a> Seer<'a> {
     /// As [`Tracer::new`]; nothing is seen in the pixel that is to be in focus.
     fn new(volume: &'a Volume, scene: &'a Scene, wanted: Wanted) -> Result<Self> {
         let dof = scene.depth_of_field;
-        // A lens is focused, and its circles of confusion found, by the depths.
-        let wanted = wanted.with_if(dof.is_some(), Layer::Depth);
+        // A lens is focused, and its circles of confusion found, by the depths, which cues show.
+        let cues = scene.depth_cues;
+        let wanted = wanted
+            .with_if(dof.is_some() || cues.is_some(), Layer::Depth)
+            .with_if(cues.is_some_and(|cues| cues.rim().is_some()), Layer::Normal);
         let mut seer = Self {
             tracer: Tracer::new(volume, scene)?.wanting(wanted),
             scene,
             lens: None,
+            depths_mm: None,
         };
+        if cues.is_some_and(|cues| cues.draw_edges()) {
+            let depth_mm = |pixel| seer.cast(pixel, [0.5; 2], None).depth_mm;
+            let pixels = (0..scene.size.pixels() as u32).into_par_iter();
+            seer.depths_mm = Some(pixels.map(depth_mm).collect());
+        }
         if let Some(dof) = dof {
             let pixels = match dof.focus.is_seen() {
                 true => scene.size.pixels() as u32,
@@ -188,7 +199,23 @@ impl<'a> Seer<'a> {
             let [r, g, b, a] = seen.color;
             seen.color = [r * kept, g * kept, b * kept, a];
         }
+        let kept = self.kept_at_edges(pixel);
+        let [r, g, b, a] = seen.color;
+        seen.color = [r * kept, g * kept, b * kept, a];
         seen
+    }
+
+    /// The share of a pixel's light that halos and contours keep.
+    fn kept_at_edges(&self, pixel: u32) -> f64 {
+        let (Some(cues), Some(depths_mm)) = (self.scene.depth_cues, &self.depths_mm) else {
+            return 1.0;
+        };
+        let [width, height] = [self.scene.size.width(), self.scene.size.height()].map(i64::from);
+        let (i, j) = (i64::from(pixel) % width, i64::from(pixel) / width);
+        cues.kept(|x, y| {
+            let inside = (0..width).contains(&(i + x)) && (0..height).contains(&(j + y));
+            inside.then(|| depths_mm[((j + y) * width + i + x) as usize])
+        })
     }
 
     /// Casts the ray through a place in a pixel, from its upper left corner, and a point of the lens or the pinhole.
@@ -196,10 +223,19 @@ impl<'a> Seer<'a> {
         let Scene { camera, size, .. } = self.scene;
         let width = size.width();
         let (x, y) = (f64::from(pixel % width) + dx, f64::from(pixel / width) + dy);
-        self.tracer.cast(match point {
+        let ray = match point {
             Some(point) => camera.ray_through(*size, x, y, point),
             None => camera.ray(*size, x, y),
-        })
+        };
+        let seen = self.tracer.cast(ray);
+        let Some(cues) = self.scene.depth_cues else {
+            return seen;
+        };
+        let cosine = seen.normal_world.dot(ray.dir_world);
+        RayResult {
+            color: cues.tinted(seen.color, seen.depth_mm, cosine),
+            ..seen
+        }
     }
 
     /// How far along the view axis what the ray of a pixel's centre met lies, mm; +∞: it met nothing.

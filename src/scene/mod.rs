@@ -9,6 +9,7 @@ mod antialias;
 mod camera;
 mod clip;
 mod color;
+mod depth_cues;
 mod depth_of_field;
 pub(crate) mod enum_names;
 mod gradient;
@@ -38,6 +39,9 @@ pub use antialias::AntiAliasing;
 pub use camera::{Camera, Lens, LensPoint, Ray};
 pub use clip::ClipPlane;
 pub use color::{Rgb, linear_from_srgb, srgb_from_linear};
+pub use depth_cues::{
+    Chromadepth, DepthCue, DepthCues, DepthRange, Edge, Ramp, StepCount, WidthPx,
+};
 pub use depth_of_field::{Aperture, DepthOfField, DofMethod, Focus};
 pub use gradient::{Gradient, Precomputed};
 pub use homogeneity::{Homogeneity, HomogeneityRule};
@@ -51,8 +55,8 @@ pub use picture::{Emission, Picture, Projection, Window};
 pub use quadrature::{Quadrature, QuadratureMethod};
 pub use quantities::{
     Brightness, Contrast, DistanceMm, FovDeg, Gamma, HeightMm, HomogeneityLimit, Intensity,
-    LightSizeDeg, OcclusionError, RayCount, Reflectance, ScreenError, ShadedFrom, ShadowStep,
-    Share, Shininess, StepVoxels, Termination,
+    LightSizeDeg, OcclusionError, RayCount, Reflectance, RimPower, ScreenError, ShadedFrom,
+    ShadowStep, Share, Shininess, StepVoxels, Termination,
 };
 pub use sampling::{
     Filter, Reconstruction, Refine, RefineMethod, Sampling, SamplingMethod, Storage, Traverse,
@@ -95,6 +99,8 @@ pub struct Scene {
     pub shadows: Option<Shadows>,
     /// The lens; `None`: a pinhole.
     pub depth_of_field: Option<DepthOfField>,
+    /// What colours tell of depth; `None`: nothing.
+    pub depth_cues: Option<DepthCues>,
     /// How gradients are computed for normals, in the layer and in shading.
     pub gradient: Gradient,
     /// The tone curve of display pictures.
@@ -129,6 +135,7 @@ impl Scene {
             ambient_occlusion: None,
             shadows: None,
             depth_of_field: None,
+            depth_cues: None,
             gradient: Gradient::default(),
             tone: Tone::default(),
         })

@@ -88,6 +88,8 @@ quantities! {
     /// How much of the light from everywhere may be left undecided to either side: what is less takes squares that are no longer
     /// parted.
     OcclusionError: "a bound of occlusion", "from 0.001 to 0.5", |v| (0.001..=0.5).contains(&v);
+    /// Exponent of the mask that confines a colour to the rim of things.
+    RimPower: "an exponent", "from 0.1 to 100", |v| (0.1..=100.0).contains(&v);
     /// A share of a whole.
     Share = 1.0: "a share", "from 0 to 1", |v| (0.0..=1.0).contains(&v);
     /// Number added to the encoded channels of a display picture.

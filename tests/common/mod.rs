@@ -143,6 +143,7 @@ pub fn scene(volume: &Volume, size_px: u32, picture: Picture) -> Scene {
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

@@ -56,6 +56,7 @@ pub fn scene(eye: DVec3, point: DVec3, distance_mm: f64) -> Scene {
         ambient_occlusion: Some(occlusion(1024, distance_mm)),
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Default::default(),
         anti_aliasing: Default::default(),
         sparse: None,

@@ -8,6 +8,7 @@ mod agreement;
 mod anti_aliasing;
 mod blur;
 mod clip_planes;
+mod depth_cues;
 mod edge_scenes;
 mod exact;
 mod gradients;

@@ -81,6 +81,7 @@ fn errors(renderer: &mut Renderer, profile: Profile, refine: Refine) -> (Vec<f64
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         tone: Tone::default(),
     };
     let frame = renderer.render(&scene, Wanted::ALL).unwrap().frame;

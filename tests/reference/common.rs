@@ -77,6 +77,7 @@ pub fn scene(picture: Picture) -> Scene {
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

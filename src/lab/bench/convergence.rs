@@ -201,6 +201,7 @@ pub fn through(volume: &Volume, point: DVec3, toward: DVec3, emission: Emission)
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Default::default(),
         tone: Default::default(),
     })

@@ -2,8 +2,8 @@
 
 use crate::frame::{Certificate, Kind};
 use crate::scene::{
-    ClipPlane, DepthOfField, Gradient, Light, LightFrom, QuadratureMethod, RefineMethod,
-    Reflection, ShadowMethod, Storage, TransferFunction, Traverse,
+    ClipPlane, DepthCues, DepthOfField, Gradient, Light, LightFrom, QuadratureMethod, Ramp,
+    RefineMethod, Reflection, ShadowMethod, Storage, TransferFunction, Traverse,
 };
 
 /// An enum that kernels know by numbers.
@@ -87,6 +87,13 @@ kernel_enum! {
         Gradient::Forward => GRADIENT_FORWARD = 1,
         Gradient::FourthOrder => GRADIENT_FOURTH_ORDER = 2,
         Gradient::Precomputed(_) => GRADIENT_PRECOMPUTED = 3,
+    }
+}
+
+kernel_enum! {
+    Ramp {
+        Ramp::Full => RAMP_FULL = 0,
+        Ramp::RedWhiteBlue => RAMP_RED_WHITE_BLUE = 1,
     }
 }
 
@@ -260,6 +267,8 @@ const NUMBERS: &[(&str, u32)] = &[
     ("DARKEST_PX", DepthOfField::DARKEST_PX as u32),
     ("WIDEST_PX", DepthOfField::WIDEST_PX as u32),
     ("BLURRED_SQUARE", BLURRED_SQUARE),
+    ("HALO_SLOPE", DepthCues::HALO_SLOPE),
+    ("CONTOUR_SLOPE", DepthCues::CONTOUR_SLOPE),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),
@@ -290,6 +299,7 @@ pub fn constants() -> impl Iterator<Item = (&'static str, u32)> {
         Rays::CONSTANTS,
         ProjectionLoop::CONSTANTS,
         Filling::CONSTANTS,
+        Ramp::CONSTANTS,
         SeenBy::CONSTANTS,
     ];
     tables.into_iter().flatten().copied()

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::frame::{Layer, Wanted};
+use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::abi::{CHECKED_OF, MARK_NEXT};
 use crate::render::occupancy::Criterion;
@@ -14,6 +14,7 @@ use crate::render::passes::{
 use crate::render::resources::RaySource;
 use crate::scene::AntiAliasing;
 
+use super::cues::{draw_edges, tint};
 use super::listing::{Listed, Listing};
 use super::picture::schedule;
 use super::planes::{Centers, Planes};
@@ -42,12 +43,10 @@ pub fn cast_antialiased(
     if view.wanted.has(Layer::Coverage) {
         planes.coverage = Some(run.plane("coverage plane", 0.0)?);
     }
-    let of_samples = View {
-        wanted: Wanted::NONE,
-        ..*view
-    };
+    let of_samples = view.of_other_rays();
     let schedule = schedule(run, &of_samples)?;
     let samples = Samples {
+        view: &of_samples,
         schedule: schedule.as_ref(),
         aa,
     };
@@ -62,11 +61,13 @@ pub fn cast_antialiased(
         mark_unsampled(run, view, &planes, &mut marks)?;
         samples.compare(run, &one, &mut planes)?;
     }
+    draw_edges(run, view, &mut planes)?;
     run.announcing = false;
 
     if aa.is_adaptive() || view.wanted.has_layers() || centers.needs_centers() {
         centers.cast(run, &mut planes)?;
         centers.finish(run, &mut planes)?;
+        tint(run, view, &mut planes)?;
         planes.rays_per_round.push(run.rays.places() as u64);
     }
     if aa.is_adaptive() {
@@ -84,6 +85,7 @@ pub fn cast_antialiased(
             None => SampleCheck::default(),
         });
     }
+    draw_edges(run, view, &mut planes)?;
     planes.other_bytes += marks.bytes();
     Ok(planes)
 }
@@ -123,6 +125,7 @@ fn mark_unsampled(
 
 /// The rays of pixels with many.
 struct Samples<'a> {
+    view: &'a View<'a>,
     schedule: &'a dyn Schedule,
     aa: AntiAliasing,
 }
@@ -219,6 +222,7 @@ impl Samples<'_> {
         for first in (0..count).step_by(pixels_at_a_time) {
             run.rays = samples(part(first));
             self.schedule.cast_between(run, centers, &mut cast)?;
+            tint(run, self.view, &mut cast)?;
             let pixels = SampledPixels {
                 listed: &listed.pixels,
                 part: part(first),

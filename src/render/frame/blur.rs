@@ -1,7 +1,7 @@
 //! Depth of field from one picture: what is out of focus in it is blurred.
 
 use crate::error::Result;
-use crate::frame::{Layer, Wanted};
+use crate::frame::Layer;
 use crate::gpu::Buffer;
 use crate::render::passes::{
     BlurredLayer, Discs, Run, blur_along, blur_circles, blur_reach, blur_squares, blurred_squares,
@@ -10,6 +10,7 @@ use crate::render::passes::{
 use crate::render::resources::BlurTaps;
 use crate::scene::{DepthOfField, Share};
 
+use super::cues::tint;
 use super::focus::{circles, focus_mm};
 use super::picture::schedule;
 use super::planes::Planes;
@@ -25,10 +26,7 @@ use super::view::View;
 /// # Errors
 /// As [`Run::cast`]; nothing is seen in the pixel that is to be in focus; the device failed or has no room.
 pub fn gather(run: &mut Run, view: &View, planes: &mut Planes, dof: DepthOfField) -> Result<()> {
-    let of_hidden = View {
-        wanted: Wanted::NONE,
-        ..*view
-    };
+    let of_hidden = view.of_other_rays();
     let schedule = schedule(run, &of_hidden)?;
     let mut blur = Gather {
         view,
@@ -117,6 +115,7 @@ impl Gather<'_> {
             let of_hidden = &mut hidden.planes;
             self.schedule
                 .cast_hidden(run, &self.reaches, planes, of_hidden)?;
+            tint(run, self.view, of_hidden)?;
             let Planes { layers, color, .. } = of_hidden;
             circles(run, scene, lit, focus_mm, layers, color)?;
             blur_circles(run, false, layers, color, &mut hidden.discs)?;

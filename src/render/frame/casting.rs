@@ -6,6 +6,7 @@ use crate::scene::DofMethod;
 
 use super::antialias::cast_antialiased;
 use super::blur::{gather, mix};
+use super::cues::{draw_edges, tint};
 use super::lens::see_through_lens;
 use super::picture::schedule;
 use super::planes::Planes;
@@ -41,6 +42,10 @@ fn cast_through_pinhole(run: &mut Run, view: &View, is_whole: bool) -> Result<Pl
     let mut planes = schedule.planes(run)?;
     schedule.cast(run, &mut planes)?;
     schedule.finish(run, &mut planes)?;
+    tint(run, view, &mut planes)?;
+    if is_whole {
+        draw_edges(run, view, &mut planes)?;
+    }
     planes.rays_per_round.push(run.rays.count() as u64);
     Ok(planes)
 }

@@ -1,11 +1,12 @@
 //! Depth of field: the mean of the pictures that points of a lens see.
 
 use crate::error::Result;
-use crate::frame::{Layer, Wanted};
+use crate::frame::Layer;
 use crate::render::passes::{Run, add_picture};
 use crate::render::resources::RaySource;
 use crate::scene::{AntiAliasing, DepthOfField, LensPoint, RayCount, Scene};
 
+use super::cues::tint;
 use super::focus::{circles, focus_mm};
 use super::picture::schedule;
 use super::planes::Planes;
@@ -27,10 +28,7 @@ pub fn see_through_lens(
     dof: DepthOfField,
     rays: RayCount,
 ) -> Result<()> {
-    let of_points = View {
-        wanted: Wanted::NONE,
-        ..*view
-    };
+    let of_points = view.of_other_rays();
     let schedule = schedule(run, &of_points)?;
     let lens = LensPictures {
         view,
@@ -95,6 +93,7 @@ impl LensPictures<'_> {
         let pinhole = std::mem::replace(&mut run.rays, source);
         self.schedule.cast(run, seen)?;
         self.schedule.finish(run, seen)?;
+        tint(run, self.view, seen)?;
         run.rays = pinhole;
         let share = 1.0 / self.rays.get() as f32;
         add_picture(run, share, n == 0, &seen.color, &mut planes.color)

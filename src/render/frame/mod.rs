@@ -4,6 +4,7 @@
 mod antialias;
 mod blur;
 mod casting;
+mod cues;
 mod emission;
 mod focus;
 mod lens;

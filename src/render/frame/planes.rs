@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::extent::ImageSize;
-use crate::frame::{Frame, KIND, Kind, Layer, Plane, VALUE, Wanted};
+use crate::frame::{Frame, KIND, Kind, Layer, Plane, PlaneEntry, VALUE, Wanted};
 use crate::gpu::{Buffer, Device};
 use crate::render::abi::MARK_CAST;
 use crate::render::passes::{Compared, Run};
@@ -173,7 +173,15 @@ impl Planes {
             return Ok(Some(Plane::Counts(marks.map(was_cast).collect())));
         }
         if layer == Layer::Kind {
-            return Ok(Some(Plane::Counts(kind_of_medium(&frame.color))));
+            // Fog may have taken opacity, but no depth.
+            let depths = self.layers.download(device, Layer::Depth)?;
+            let kinds = match depths.and_then(PlaneEntry::out_of) {
+                Some(depths) => kinds_of(depths, |depth_mm: f32| depth_mm < f32::INFINITY),
+                None => kinds_of(frame.color.clone(), |[_, _, _, opacity]: [f32; 4]| {
+                    opacity >= Emission::LAYERS_FROM
+                }),
+            };
+            return Ok(Some(Plane::Counts(kinds)));
         }
         let pixels = frame.size.pixels();
         let filled = |value| Plane::filled(value, pixels);
@@ -208,13 +216,10 @@ fn coverage_of_one(kinds: &[u32]) -> Vec<f32> {
 }
 
 /// A medium is a surface where it is opaque enough to have layers.
-fn kind_of_medium(color: &[[f32; 4]]) -> Vec<u32> {
-    let kind = |&[_, _, _, opacity]: &[f32; 4]| {
-        if opacity >= Emission::LAYERS_FROM {
-            Kind::Surface
-        } else {
-            Kind::Nothing
-        }
+fn kinds_of<T: Copy>(pixels: Vec<T>, has_layers: impl Fn(T) -> bool) -> Vec<u32> {
+    let kind = |pixel: T| match has_layers(pixel) {
+        true => Kind::Surface as u32,
+        false => Kind::Nothing as u32,
     };
-    color.iter().map(|color| kind(color) as u32).collect()
+    pixels.into_iter().map(kind).collect()
 }

@@ -18,6 +18,7 @@ use crate::scene::{Light, Occlusion, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
+use super::cues::with_cues;
 use super::planes::Planes;
 use super::room::{check_picture, check_volume, listing_bytes};
 use super::sample_check::SampleCheck;
@@ -166,7 +167,7 @@ impl<'a> Renderer<'a> {
     /// layer's value where nothing is known ([`Layer::empty`](crate::frame::Layer::empty)).
     ///
     /// # Errors
-    /// As [`Renderer::render`]; a pixel outside the picture; no pixels; usage: occlusion that is estimated from the picture.
+    /// As [`Renderer::render`]; a pixel outside the picture; no pixels; usage: what is found from the pixels around each.
     pub fn render_pixels(
         &mut self,
         scene: &Scene,
@@ -186,21 +187,22 @@ impl<'a> Renderer<'a> {
         if pixels.is_some() {
             check_alone(scene)?;
         }
+        let needed = with_cues(scene, wanted);
         let listing_bytes = listing_bytes(scene);
         let min_held_bytes = HeldVolume::min_bytes(self.volume, self.octree) + listing_bytes;
-        check_picture(self.device.info(), scene.size, wanted, min_held_bytes)?;
+        check_picture(self.device.info(), scene.size, needed, min_held_bytes)?;
         let volume_upload = self.upload_volume(scene.sampling.voxels)?;
         let uploaded_before = self.device.uploaded_bytes();
-        self.precompute(scene, wanted)?;
+        self.precompute(scene, needed)?;
         let held_bytes = self.held_bytes();
         let with_lists = held_bytes + listing_bytes;
-        check_picture(self.device.info(), scene.size, wanted, with_lists)?;
+        check_picture(self.device.info(), scene.size, needed, with_lists)?;
 
         let mut timings = Timings::default();
         let Launched {
             planes,
             classify_ms,
-        } = self.launch(scene, wanted, pixels, &mut timings)?;
+        } = self.launch(scene, needed, pixels, &mut timings)?;
         let FrameTimes {
             passes,
             build_ms,
@@ -222,7 +224,7 @@ impl<'a> Renderer<'a> {
             rays_per_round: planes.rays_per_round.clone(),
             sample_check: planes.check,
             focus_mm: planes.focus_mm,
-            gradients: (self.directions_for(scene, wanted)).map(|directions| directions.figures),
+            gradients: (self.directions_for(scene, needed)).map(|directions| directions.figures),
             device_bytes: held_bytes + self.occupancies.bytes() + planes.bytes(),
         })
     }
@@ -342,12 +344,17 @@ fn jitter_of(scene: &Scene) -> Option<Jitter> {
 
 /// Checks that pixels of a scene can be rendered without those around them.
 fn check_alone(scene: &Scene) -> Result<()> {
-    match scene.ambient_occlusion {
-        Some(Occlusion::Screen(_)) => Err(Error::usage(
+    if let Some(Occlusion::Screen(_)) = scene.ambient_occlusion {
+        return Err(Error::usage(
             "occlusion that is estimated from the picture needs all of its pixels",
-        )),
-        Some(Occlusion::Volume(_)) | None => Ok(()),
+        ));
     }
+    if scene.depth_cues.is_some_and(|cues| cues.draw_edges()) {
+        return Err(Error::usage(
+            "what is drawn at edges needs the pixels on both sides of them",
+        ));
+    }
+    Ok(())
 }
 
 fn check_work_group(device: &Device, work_group: Option<[usize; 2]>) -> Result<()> {

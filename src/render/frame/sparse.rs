@@ -11,6 +11,7 @@ use crate::render::passes::{Blocks, Differs, Fill, Run, mark_grid, mark_refill};
 use crate::render::resources::RaySource;
 use crate::scene::{Refill, Sparse};
 
+use super::cues::{draw_edges, tint};
 use super::listing::{Listed, Listing};
 use super::planes::Planes;
 use super::schedule::Schedule;
@@ -59,6 +60,10 @@ pub fn cast_sparsely(
     if rule.interpolates_hits() {
         schedule.interpolate(run, &marks, &mut planes)?;
     }
+    let listed = std::mem::replace(&mut run.rays, all);
+    tint(run, view, &mut planes)?;
+    draw_edges(run, view, &mut planes)?;
+    let all = std::mem::replace(&mut run.rays, listed);
     run.announcing = false;
 
     rule.begin(run, &mut marks)?;
@@ -81,6 +86,8 @@ pub fn cast_sparsely(
     if schedule.finish(run, &mut planes)? {
         rule.fill(run, &marks, &mut planes)?;
     }
+    tint(run, view, &mut planes)?;
+    draw_edges(run, view, &mut planes)?;
     planes.cast = Some(marks);
     Ok(planes)
 }

@@ -260,7 +260,7 @@ impl Schedule for SurfacePasses<'_> {
 
     fn hidden_planes(&self, run: &Run) -> Result<Option<Planes>> {
         let mut layers = vec![Layer::Kind, Layer::Depth];
-        if self.is_shaded {
+        if self.is_shaded || self.view.wanted.has(Layer::Normal) {
             layers.push(Layer::Normal);
         }
         if self.occlusion.is_some() && self.screen().is_none() {

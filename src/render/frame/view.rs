@@ -9,6 +9,8 @@ use crate::render::resources::DeviceGradient;
 use crate::scene::{Lens, Scene};
 use crate::volume::Volume;
 
+use super::cues::with_cues;
+
 /// A scene with its data on host and device, and the planes that are wanted of it.
 pub struct View<'a> {
     /// The scene.
@@ -25,7 +27,15 @@ pub struct View<'a> {
     pub gradient: DeviceGradient<'a>,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    /// The view of rays beside those of the pixels' centres, of whose planes nothing is wanted but what their colours need.
+    pub fn of_other_rays(&self) -> Self {
+        Self {
+            wanted: with_cues(self.scene, Wanted::NONE),
+            ..*self
+        }
+    }
+
     /// The sampling step, single precision.
     pub fn step_mm(&self) -> f32 {
         step_mm(&self.scene.sampling, self.volume) as f32

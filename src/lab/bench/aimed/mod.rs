@@ -287,6 +287,7 @@ fn scene_of(target: &Target) -> Result<Scene> {
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Gradient::default(),
         anti_aliasing: Default::default(),
         sparse: None,

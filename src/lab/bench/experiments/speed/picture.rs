@@ -150,6 +150,7 @@ pub fn scene(
         ambient_occlusion: None,
         shadows: None,
         depth_of_field: None,
+        depth_cues: None,
         gradient: Default::default(),
         anti_aliasing: Default::default(),
         sparse: None,

@@ -1,0 +1,646 @@
+//! Depth cues: what a picture's colours tell of how far away things are.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::camera::{Camera, Lens};
+use super::enum_names::enum_names;
+use super::keyed_text::KeyedText;
+use super::quantities::{RimPower, Share};
+use crate::error::{Error, Result};
+use crate::extent::ImageSize;
+use crate::number_text::number;
+use crate::subject::Sphere;
+
+/// A depth cue, as one is asked for (`--cue`): its kind, how strong it is, and what else that kind has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DepthCue {
+    /// What is far away fades into the background.
+    Fog(Share),
+    /// Near is red and far is blue.
+    Chromadepth(Chromadepth),
+    /// What is far away is dark around what is near.
+    Halo(Edge),
+    /// What is in front of something is outlined.
+    Contour(Edge),
+}
+
+/// Pseudo-chromadepth: colours by depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chromadepth {
+    /// The share of the colour that is the depth's.
+    pub strength: Share,
+    /// The colours from near to far.
+    pub ramp: Ramp,
+    /// How many depths are told apart; `None`: all.
+    pub steps: Option<StepCount>,
+    /// The exponent of the mask that confines it to the rim of things; `None`: it is all over them.
+    pub rim: Option<RimPower>,
+}
+
+/// What is drawn where depths differ between neighbouring pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// The share of the light that it takes where it is darkest.
+    pub strength: Share,
+    /// How wide it is; `None`: as suits the picture's height.
+    pub width: Option<WidthPx>,
+}
+
+/// The colours of depths, from near to far, linear light in between.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Ramp {
+    /// Red, yellow, green, cyan, blue (Steenblik 1987).
+    #[default]
+    Full,
+    /// Red, white, blue, which ordinary screens tell apart better (Schemali and Eisemann 2014).
+    RedWhiteBlue,
+}
+
+enum_names!(Ramp, "a ramp of colours": Full = "full", RedWhiteBlue = "red-white-blue");
+
+impl Ramp {
+    /// The colour of a share of the way from near to far, linear light: between its colours, which follow in equal steps, all
+    /// channels are linear.
+    pub fn color(self, share: f64) -> [f64; 3] {
+        let unit = |x: f64| x.clamp(0.0, 1.0);
+        match self {
+            Self::Full => {
+                let x = 4.0 * share;
+                [unit(2.0 - x), unit(x.min(4.0 - x)), unit(x - 2.0)]
+            }
+            Self::RedWhiteBlue => {
+                let x = 2.0 * share;
+                [unit(2.0 - x), unit(x.min(2.0 - x)), unit(x)]
+            }
+        }
+    }
+}
+
+/// Declares counts with a domain.
+macro_rules! counts {
+    ($($(#[$meta:meta])* $name:ident: $what:literal, $from:literal, $to:literal;)*) => {$(
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct $name(u32);
+
+        impl $name {
+            /// Returns the number.
+            pub const fn get(self) -> u32 {
+                self.0
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = Error;
+
+            fn from_str(text: &str) -> Result<Self> {
+                let count: Option<u32> = text.trim().parse().ok();
+                let is_one = |count: &u32| ($from..=$to).contains(count);
+                count.filter(is_one).map(Self).ok_or_else(|| {
+                    Error::usage(format!(
+                        concat!("'{}' is not ", $what, ": write a whole number from {} to {}"),
+                        text, $from, $to
+                    ))
+                })
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    )*};
+}
+
+counts! {
+    /// How many depths are told apart.
+    StepCount: "a number of steps", 2, 64;
+    /// How wide what is drawn at edges is, pixels.
+    WidthPx: "a width in pixels", 1, 64;
+}
+
+impl WidthPx {
+    /// As wide as suits a picture's height: one pixel for so many rows.
+    fn of_rows(size: ImageSize, rows: u32) -> Self {
+        Self((size.height() / rows).clamp(1, 64))
+    }
+}
+
+impl DepthCue {
+    const FORM: &'static str = "fog:S, chromadepth:S, halo:S or contour:S, S from 0 to 1, and behind it, such as chromadepth:1,steps=8, \
+         of chromadepth ramp=full|red-white-blue, steps=N and rim=P, of halo and contour width=PX";
+
+    /// The name of its kind.
+    fn kind(self) -> &'static str {
+        match self {
+            Self::Fog(_) => "fog",
+            Self::Chromadepth(_) => "chromadepth",
+            Self::Halo(_) => "halo",
+            Self::Contour(_) => "contour",
+        }
+    }
+}
+
+impl FromStr for DepthCue {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let refused = |why: &str| {
+            let form = Self::FORM;
+            Error::usage(format!("'{text}' is not a depth cue: {why}; write {form}"))
+        };
+        let (first, keys) = match text.split_once(',') {
+            Some((first, keys)) => (first, Some(keys)),
+            None => (text, None),
+        };
+        let (kind, strength) = match first.split_once(':') {
+            Some((kind, strength)) => (kind.trim(), strength.parse()?),
+            None => (first.trim(), Share::default()),
+        };
+        let mut keys = keys
+            .map(|keys| KeyedText::read(keys, "what follows a depth cue", Self::FORM))
+            .transpose()?;
+        /// The value of a key, where there are keys and it is among them.
+        fn take<T: FromStr<Err = Error>>(
+            keys: &mut Option<KeyedText>,
+            key: &str,
+        ) -> Result<Option<T>> {
+            match keys {
+                Some(keys) => keys.take(key),
+                None => Ok(None),
+            }
+        }
+        let mut edge = || -> Result<Edge> {
+            let width = take(&mut keys, "width")?;
+            Ok(Edge { strength, width })
+        };
+        let cue = match kind.to_ascii_lowercase().as_str() {
+            "fog" => Self::Fog(strength),
+            "halo" => Self::Halo(edge()?),
+            "contour" => Self::Contour(edge()?),
+            "chromadepth" => Self::Chromadepth(Chromadepth {
+                strength,
+                ramp: take(&mut keys, "ramp")?.unwrap_or_default(),
+                steps: take(&mut keys, "steps")?,
+                rim: take(&mut keys, "rim")?,
+            }),
+            _ => return Err(refused(&format!("there is none named '{kind}'"))),
+        };
+        keys.map_or(Ok(()), |keys| keys.end())?;
+        Ok(cue)
+    }
+}
+
+impl fmt::Display for DepthCue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = self.kind();
+        match self {
+            Self::Fog(strength) => write!(f, "{kind}:{strength}"),
+            Self::Halo(edge) | Self::Contour(edge) => {
+                write!(f, "{kind}:{}", edge.strength)?;
+                edge.width.map_or(Ok(()), |px| write!(f, ",width={px}"))
+            }
+            Self::Chromadepth(Chromadepth {
+                strength,
+                ramp,
+                steps,
+                rim,
+            }) => {
+                write!(f, "{kind}:{strength},ramp={ramp}")?;
+                steps.map_or(Ok(()), |steps| write!(f, ",steps={steps}"))?;
+                rim.map_or(Ok(()), |power| write!(f, ",rim={power}"))
+            }
+        }
+    }
+}
+
+/// The depths between which cues tell near from far, mm: of what is nearest, and of what is farthest and lies behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthRange {
+    near_mm: f64,
+    far_mm: f64,
+}
+
+impl DepthRange {
+    /// Constructs it from two distances along rays, from the eye or from the eye plane of a parallel camera.
+    ///
+    /// # Errors
+    /// Usage: a negative or infinite distance; nothing between them.
+    pub fn new(near_mm: f64, far_mm: f64) -> Result<Self> {
+        if near_mm >= 0.0 && far_mm > near_mm && far_mm.is_finite() {
+            return Ok(Self { near_mm, far_mm });
+        }
+        Err(Error::usage(format!(
+            "no depths lie between {near_mm} and {far_mm} mm: write NEAR,FAR, the smaller first, from 0"
+        )))
+    }
+
+    /// From the nearest to the farthest point of a sphere in front of the eye; around an eye inside from there.
+    ///
+    /// # Errors
+    /// Usage: the sphere lies behind the eye or is a point.
+    pub fn of_sphere(sphere: Sphere, camera: &Camera) -> Result<Self> {
+        let to_center = sphere.center_world - camera.eye_world();
+        let center_mm = match camera.lens() {
+            Lens::Perspective { .. } => to_center.length(),
+            Lens::Orthographic { .. } => to_center.dot(camera.forward()),
+        };
+        let near_mm = (center_mm - sphere.radius_mm).max(0.0);
+        Self::new(near_mm, center_mm + sphere.radius_mm).map_err(|_| {
+            Error::usage("nothing that the picture can show lies in front of the eye, so that depth cues have no range")
+                .hint("give one with 'cue-range', or turn the camera")
+        })
+    }
+
+    /// The depth where near begins, mm.
+    pub fn near_mm(self) -> f64 {
+        self.near_mm
+    }
+
+    /// The depth where far ends, mm.
+    pub fn far_mm(self) -> f64 {
+        self.far_mm
+    }
+
+    /// The share of the way from near to far that a depth has, from 0 to 1.
+    pub fn share(self, depth_mm: f64) -> f64 {
+        ((depth_mm - self.near_mm) / (self.far_mm - self.near_mm)).clamp(0.0, 1.0)
+    }
+}
+
+impl FromStr for DepthRange {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let Some((near, far)) = text.split_once(',') else {
+            return Err(Error::usage(format!(
+                "'{text}' is no range of depths: write NEAR,FAR in mm"
+            )));
+        };
+        Self::new(number(near)?, number(far)?)
+    }
+}
+
+impl fmt::Display for DepthRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.near_mm, self.far_mm)
+    }
+}
+
+/// The depth cues of a picture, over the depth of what each ray shows: a surface's hit, the place of an extremum, the mean of a
+/// medium. A ray that shows nothing, or no depth, has none.
+///
+/// d is the share of the way from near to far, 0 to 1, C the colour (linear light, premultiplied), Y its luminance (Rec. 709).
+/// Chromadepth makes C + w·(Y·ramp(d) − C), w its strength, times (1 − |n·v|)^P where it is confined to the rim of things, n
+/// the normal, v toward the viewer; in N steps d is the middle of its step. Fog multiplies that, opacity included, by 1 − S·d.
+/// These two are of each ray.
+///
+/// Halo and contour are of the picture's pixels, whose depths are those of the rays through their centres. A halo multiplies
+/// the light of a pixel by 1 − S·h, h the greatest of (1 − r/(W + 1))·min(1, 5·Δ), r ≤ W the distance in pixels of another
+/// one and Δ how much nearer that is, as a share of the range. A contour multiplies it by 1 − S·e, e the greatest of
+/// min(1, 50·δ) over the four lines through the pixel, δ the second difference of the depth, as a share of the range, of the
+/// two pixels W beside it; nothing is infinitely far away.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthCues {
+    /// The share of what is farthest that fog takes.
+    pub fog: Share,
+    /// Colours by depth.
+    pub chromadepth: Option<Chromadepth>,
+    /// The share of the light that halos take, and how many pixels around something near they reach.
+    pub halo: Option<(Share, WidthPx)>,
+    /// The share of the light that contours take, and how many pixels wide they are.
+    pub contour: Option<(Share, WidthPx)>,
+    /// Between which depths near is told from far.
+    pub range: DepthRange,
+}
+
+impl DepthCues {
+    /// What a halo darkens by with the depth, as a share of the range: it is full where something is a fifth of it nearer.
+    pub const HALO_SLOPE: u32 = 5;
+    /// What a contour darkens by with the second difference of depths, as a share of the range.
+    pub const CONTOUR_SLOPE: u32 = 50;
+    /// The rows of a picture for which a halo has one pixel.
+    const HALO_ROWS: u32 = 85;
+    /// The rows of a picture for which a contour has one pixel.
+    const CONTOUR_ROWS: u32 = 700;
+
+    /// The cues that are asked for, widths filled in.
+    ///
+    /// # Errors
+    /// Usage: two of one kind.
+    pub fn filled_in(cues: &[DepthCue], size: ImageSize) -> Result<Vec<DepthCue>> {
+        for (place, cue) in cues.iter().enumerate() {
+            if cues[..place].iter().any(|other| other.kind() == cue.kind()) {
+                let kind = cue.kind();
+                return Err(Error::usage(format!(
+                    "the depth cue '{kind}' is given twice"
+                )));
+            }
+        }
+        let wide = |edge: Edge, rows| Edge {
+            width: edge.width.or(Some(WidthPx::of_rows(size, rows))),
+            ..edge
+        };
+        let filled = |cue: &DepthCue| match *cue {
+            DepthCue::Halo(edge) => DepthCue::Halo(wide(edge, Self::HALO_ROWS)),
+            DepthCue::Contour(edge) => DepthCue::Contour(wide(edge, Self::CONTOUR_ROWS)),
+            other => other,
+        };
+        Ok(cues.iter().map(filled).collect())
+    }
+
+    /// The cues of a picture of this size.
+    ///
+    /// # Errors
+    /// As [`DepthCues::filled_in`].
+    pub fn new(cues: &[DepthCue], range: DepthRange, size: ImageSize) -> Result<Self> {
+        let mut all = Self {
+            fog: Share::NONE,
+            chromadepth: None,
+            halo: None,
+            contour: None,
+            range,
+        };
+        let drawn = |edge: Edge, rows| {
+            let width = edge.width.unwrap_or(WidthPx::of_rows(size, rows));
+            Some((edge.strength, width))
+        };
+        for cue in Self::filled_in(cues, size)? {
+            match cue {
+                DepthCue::Fog(share) => all.fog = share,
+                DepthCue::Chromadepth(colors) => all.chromadepth = Some(colors),
+                DepthCue::Halo(edge) => all.halo = drawn(edge, Self::HALO_ROWS),
+                DepthCue::Contour(edge) => all.contour = drawn(edge, Self::CONTOUR_ROWS),
+            }
+        }
+        Ok(all)
+    }
+
+    /// Whether the colours of single rays depend on their depths.
+    pub fn tint(&self) -> bool {
+        self.fog != Share::NONE || self.chromadepth.is_some()
+    }
+
+    /// Whether what is seen beside a pixel decides its light.
+    pub fn draw_edges(&self) -> bool {
+        self.halo.is_some() || self.contour.is_some()
+    }
+
+    /// The exponent of the mask that confines colours to the rim of things, for which normals are needed.
+    pub fn rim(&self) -> Option<RimPower> {
+        self.chromadepth.and_then(|colors| colors.rim)
+    }
+
+    /// The colour of a ray (linear light, premultiplied) by fog and chromadepth: of the depth in mm of what it shows, whose
+    /// normal has this cosine with the ray.
+    pub fn tinted(&self, color: [f64; 4], depth_mm: f64, cosine: f64) -> [f64; 4] {
+        if depth_mm == f64::INFINITY {
+            return color;
+        }
+        let share = self.range.share(depth_mm);
+        let [r, g, b, a] = color;
+        let tinted = match self.chromadepth {
+            None => [r, g, b],
+            Some(colors) => {
+                let mask = (colors.rim).map_or(1.0, |power| {
+                    (1.0 - cosine.abs()).clamp(0.0, 1.0).powf(power.get())
+                });
+                let weight = colors.strength.get() * mask;
+                let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+                let ramp = colors.ramp.color(colors.stepped(share));
+                let mixed =
+                    |channel: f64, of_depth: f64| channel + weight * (light * of_depth - channel);
+                [mixed(r, ramp[0]), mixed(g, ramp[1]), mixed(b, ramp[2])]
+            }
+        };
+        let kept = 1.0 - self.fog.get() * share;
+        let [r, g, b] = tinted;
+        [r, g, b, a].map(|channel| channel * kept)
+    }
+
+    /// The share of a pixel's light that halos and contours keep, by the depths in mm of the pixels so many columns and rows
+    /// beside it; `None`: outside the picture, +∞: nothing is seen.
+    pub fn kept(&self, depth_mm: impl Fn(i64, i64) -> Option<f64>) -> f64 {
+        let here = depth_mm(0, 0).unwrap_or(f64::INFINITY);
+        if here == f64::INFINITY {
+            return 1.0;
+        }
+        let width_mm = self.range.far_mm - self.range.near_mm;
+        let mut kept = 1.0;
+        if let Some((strength, width)) = self.halo {
+            let reach = i64::from(width.get());
+            let beside = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y)));
+            let dark = beside.fold(0.0, |dark: f64, (x, y)| {
+                let distance = ((x * x + y * y) as f64).sqrt();
+                let nearer_mm = here - depth_mm(x, y).unwrap_or(f64::INFINITY);
+                let share = (f64::from(Self::HALO_SLOPE) * nearer_mm / width_mm).clamp(0.0, 1.0);
+                dark.max((1.0 - distance / (reach + 1) as f64).max(0.0) * share)
+            });
+            kept *= 1.0 - strength.get() * dark;
+        }
+        if let Some((strength, width)) = self.contour {
+            let w = i64::from(width.get());
+            let dark = [(w, 0), (0, w), (w, w), (w, -w)]
+                .into_iter()
+                .filter_map(|(x, y)| Some(depth_mm(x, y)? + depth_mm(-x, -y)? - 2.0 * here))
+                .map(|bend_mm| {
+                    (f64::from(Self::CONTOUR_SLOPE) * bend_mm / width_mm).clamp(0.0, 1.0)
+                })
+                .fold(0.0, f64::max);
+            kept *= 1.0 - strength.get() * dark;
+        }
+        kept
+    }
+}
+
+impl Chromadepth {
+    /// A share of the way from near to far as it is told apart.
+    fn stepped(self, share: f64) -> f64 {
+        match self.steps {
+            None => share,
+            Some(steps) => {
+                let count = f64::from(steps.get());
+                ((share * count).min(count - 1.0).floor() + 0.5) / count
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn cues(texts: &[&str]) -> DepthCues {
+        let cues: Vec<DepthCue> = texts.iter().map(|text| text.parse().unwrap()).collect();
+        let range = DepthRange::new(100.0, 200.0).unwrap();
+        DepthCues::new(&cues, range, ImageSize::new(64, 64).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read_and_nothing_else() {
+        for text in [
+            "fog:0.5",
+            "chromadepth:1,ramp=full",
+            "chromadepth:0.8,ramp=red-white-blue,steps=8,rim=2",
+            "halo:0.7,width=12",
+            "contour:1",
+        ] {
+            assert_eq!(text.parse::<DepthCue>().unwrap().to_string(), text);
+        }
+        let short: DepthCue = "chromadepth".parse().unwrap();
+        assert_eq!(short.to_string(), "chromadepth:1,ramp=full");
+        for (wrong, why) in [
+            ("mist:1", "there is none named 'mist'; write fog:S"),
+            ("fog:2", "a share of 2 is out of its domain"),
+            ("fog:1,width=3", "'width' is none of its keys"),
+            ("halo:1,width=0", "'0' is not a width in pixels"),
+            ("chromadepth:1,steps=1", "'1' is not a number of steps"),
+            ("chromadepth:1,ramp=jet", "'jet' is not a ramp of colours"),
+            (
+                "chromadepth:1,rim=0",
+                "an exponent of 0 is out of its domain",
+            ),
+        ] {
+            let refused = wrong.parse::<DepthCue>().unwrap_err().to_string();
+            assert!(refused.contains(why), "{wrong}: {refused}");
+        }
+        for (wrong, why) in [
+            ("5", "'5' is no range of depths"),
+            ("7,5", "no depths lie between 7 and 5 mm"),
+            ("-1,5", "no depths lie between -1 and 5 mm"),
+            ("5,5", "no depths lie between"),
+        ] {
+            let refused = wrong.parse::<DepthRange>().unwrap_err().to_string();
+            assert!(refused.contains(why), "{wrong}: {refused}");
+        }
+    }
+
+    #[test]
+    fn a_kind_is_given_once_and_widths_follow_the_height() {
+        let parsed = ["halo:1", "contour:1"].map(|text| text.parse::<DepthCue>().unwrap());
+        let size = ImageSize::new(100, 1400).unwrap();
+        let filled = DepthCues::filled_in(&parsed, size).unwrap();
+        let texts: Vec<String> = filled.iter().map(DepthCue::to_string).collect();
+        assert_eq!(texts, ["halo:1,width=16", "contour:1,width=2"]);
+        let twice = [parsed[0], parsed[0]];
+        let refused = DepthCues::filled_in(&twice, size).unwrap_err().to_string();
+        assert!(refused.contains("'halo' is given twice"), "{refused}");
+    }
+
+    #[test]
+    fn ramps_pass_their_colours_in_equal_steps() {
+        let full = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| Ramp::Full.color(share));
+        assert_eq!(
+            full,
+            [
+                [1.0, 0.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [0.0, 1.0, 1.0],
+                [0.0, 0.0, 1.0]
+            ]
+        );
+        let three = [0.0, 0.5, 1.0].map(|share| Ramp::RedWhiteBlue.color(share));
+        assert_eq!(three, [[1.0, 0.0, 0.0], [1.0; 3], [0.0, 0.0, 1.0]]);
+        assert_eq!(Ramp::RedWhiteBlue.color(0.25), [1.0, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn fog_and_colours_follow_the_depth() {
+        let white = [1.0; 4];
+        let fog = cues(&["fog:0.8"]);
+        assert_eq!(fog.tinted(white, 50.0, 0.0), white);
+        assert!((fog.tinted(white, 150.0, 0.0)[3] - 0.6).abs() < 1e-12);
+        assert!((fog.tinted(white, 900.0, 0.0)[0] - 0.2).abs() < 1e-12);
+        // Where nothing is seen there is nothing to fade.
+        assert_eq!(fog.tinted([0.0; 4], f64::INFINITY, 0.0), [0.0; 4]);
+
+        let colors = cues(&["chromadepth:1"]);
+        let green = colors.tinted([0.5, 0.5, 0.5, 1.0], 150.0, 0.0);
+        assert!((green[1] - 0.5).abs() < 1e-12 && green[0].abs() < 1e-12 && green[3] == 1.0);
+        // Two steps: the middles of the nearer and of the farther half.
+        let two = cues(&["chromadepth:1,steps=2"]);
+        let yellow = two.tinted(white, 149.0, 0.0);
+        assert!((yellow[0] - 1.0).abs() < 1e-12 && (yellow[1] - 1.0).abs() < 1e-12);
+        assert_eq!(two.tinted(white, 101.0, 0.0), yellow);
+        assert_ne!(two.tinted(white, 151.0, 0.0), yellow);
+        // At the rim alone: what is faced keeps its colour.
+        let rim = cues(&["chromadepth:1,rim=2"]);
+        assert_eq!(rim.tinted(white, 100.0, -1.0), white);
+        assert_eq!(
+            rim.tinted(white, 100.0, 0.0),
+            [1.0, 0.0, 0.0, 1.0]
+                .map(|c| {
+                    // the luminance of white is 1 but for rounding
+                    c * (0.2126 + 0.7152 + 0.0722)
+                })
+                .map(|c| c.min(1.0))
+        );
+    }
+
+    /// A row of pixels: something near up to column 0, something far from column 1 on, nothing from column 9 on.
+    fn row(column: i64, reach: i64) -> impl Fn(i64, i64) -> Option<f64> {
+        move |x, _| match column + x {
+            at if at < -reach => None,
+            at if at <= 0 => Some(110.0),
+            at if at <= 8 => Some(150.0),
+            _ => Some(f64::INFINITY),
+        }
+    }
+
+    #[test]
+    fn halos_fall_off_around_what_is_nearer() {
+        let halo = cues(&["halo:0.5,width=4"]);
+        for (column, distance) in [(1, 1.0), (2, 2.0), (4, 4.0)] {
+            let expected = 1.0 - 0.5 * (1.0 - distance / 5.0);
+            assert!((halo.kept(row(column, 40)) - expected).abs() < 1e-12);
+        }
+        // What is near has none, what is farther away than their width neither, and nothing stays nothing.
+        for column in [0, 5, 8, 9] {
+            assert_eq!(halo.kept(row(column, 40)), 1.0, "{column}");
+        }
+        // Depths that differ by less than a fifth of the range: a part of it.
+        let some = halo.kept(|x, _| Some(if x < 0 { 140.0 } else { 150.0 }));
+        assert!((some - (1.0 - 0.5 * 0.8 * 0.5)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn contours_are_on_the_nearer_side_of_a_gap() {
+        let contour = cues(&["contour:1,width=1"]);
+        for (column, kept) in [(-1, 1.0), (0, 0.0), (1, 1.0), (7, 1.0), (8, 0.0), (9, 1.0)] {
+            assert_eq!(contour.kept(row(column, 40)), kept, "{column}");
+        }
+        // Slanted planes have none, whatever their slope, nor has the picture's own edge.
+        assert_eq!(
+            contour.kept(|x, y| Some(150.0 + 9.0 * x as f64 - 3.0 * y as f64)),
+            1.0
+        );
+        assert_eq!(contour.kept(row(0, 0)), 0.0);
+        assert_eq!(
+            contour.kept(|x, y| (x >= 0 && y >= 0).then_some(150.0)),
+            1.0
+        );
+    }
+
+    #[test]
+    fn the_range_of_a_sphere_is_what_lies_of_it_in_front() {
+        let eye = DVec3::new(0.0, -100.0, 0.0);
+        let lens = Lens::Perspective { fov_deg: 30.0 };
+        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, lens).unwrap();
+        let sphere = |y: f64, radius_mm: f64| Sphere {
+            center_world: DVec3::new(0.0, y, 0.0),
+            radius_mm,
+        };
+        let range = DepthRange::of_sphere(sphere(0.0, 30.0), &camera).unwrap();
+        assert_eq!((range.near_mm(), range.far_mm()), (70.0, 130.0));
+        let inside = DepthRange::of_sphere(sphere(0.0, 130.0), &camera).unwrap();
+        assert_eq!((inside.near_mm(), inside.far_mm()), (0.0, 230.0));
+        let parallel = Lens::Orthographic { height_mm: 10.0 };
+        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, parallel).unwrap();
+        assert!(DepthRange::of_sphere(sphere(-200.0, 30.0), &camera).is_err());
+    }
+}

@@ -75,7 +75,7 @@ pub use gpu::Device;
 pub use octree::Octree;
 pub use render::{Options, Renderer};
 pub use scene::{Mode, Scene};
-pub use subject::{Sphere, Subject};
+pub use subject::{Content, Corners, Sphere, Subject};
 pub use volume::Volume;
 
 /// The version of this library and of its program.

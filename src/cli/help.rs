@@ -36,7 +36,7 @@ const BRIEF: &[(&str, &str, &str)] = &[
     ("", "gradient-smooth", "sigma of the smoothing before them"),
     ("", "light-size", "The angle that each light fills"),
     ("", "ssao", "Ambient occlusion estimated from the picture"),
-    ("", "cue", "tell near from far by colour; once of each kind"),
+    ("", "cue", "what tells near from far"),
     ("", "cue-range", "where near begins and far ends, in mm"),
     ("", "clip-plane", "Keep what lies on this side of a plane; up to 64 times"),
     ("", "sampling", "exact, solving every cell, or at fixed steps"),

@@ -8,7 +8,7 @@ use crate::gpu::DeviceInfo;
 use crate::octree::Leaf;
 use crate::options::{FilePath, NonFiniteRule, SceneOptions, SpacingMm, VolumeOptions};
 use crate::progress::Progress;
-use crate::render::{check_volume, content_sphere};
+use crate::render::{check_volume, content};
 use crate::subject::Subject;
 use crate::volume::{
     self, Histogram, NonFinite, RawLayout, RawSize, RawType, ReadOptions, Volume, percentiles,
@@ -125,7 +125,7 @@ impl Loaded {
         self.volume.content_hash().to_hex().to_string()
     }
 
-    /// Measures what pictures show of the volume, where their cameras or depth cues depend on it: one sphere for all that
+    /// Measures what pictures show of the volume, where their cameras or depth cues depend on it: one content for all that
     /// are made of these options.
     pub fn frame(&mut self, pictures: &[SceneOptions]) -> Result<()> {
         let framed = pictures
@@ -134,7 +134,7 @@ impl Loaded {
         let shown = framed.map(|options| options.shown(&self.subject));
         let shown = shown.collect::<Result<Vec<_>>>()?;
         if !shown.is_empty() {
-            self.subject.content = content_sphere(&self.volume, &shown)?;
+            self.subject.content = content(&self.volume, &shown)?;
         }
         Ok(())
     }

@@ -133,7 +133,7 @@ impl CameraOptions {
     fn fitting(&self, subject: &Subject) -> Sphere {
         match self.fit.unwrap_or_default() {
             Fit::Volume => subject.sphere,
-            Fit::Content => subject.content,
+            Fit::Content => subject.content.sphere,
         }
     }
 

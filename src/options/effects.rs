@@ -8,7 +8,7 @@ use crate::scene::{
     AmbientOcclusion, Camera, DepthCue, DepthCues, DepthOfField, DepthRange, DofMethod,
     LightSizeDeg, Mode, Occlusion, Phong, Reflectance, ScreenOcclusion, ShadowMethod, Shadows,
 };
-use crate::subject::Sphere;
+use crate::subject::Content;
 
 text_form!(
     AmbientOcclusion,
@@ -145,17 +145,17 @@ impl EffectOptions {
         self
     }
 
-    /// Makes the depth cues of a camera's picture, and the options that make the same: without a range the one from the
-    /// nearest to the farthest point of `content`.
+    /// Makes the depth cues of a camera's picture, and the options that make the same: without a range that of
+    /// `content`.
     ///
     /// # Errors
-    /// As [`DepthCues::new`], [`DepthRange::of_sphere`] and [`Self::check_cues`].
+    /// As [`DepthCues::new`], [`DepthRange::of_content`] and [`Self::check_cues`].
     pub(super) fn resolve_cues(
         &mut self,
         mode: Mode,
         camera: &Camera,
         size: ImageSize,
-        content: Sphere,
+        content: Content,
     ) -> Result<Option<DepthCues>> {
         let Some(cues) = &self.cue else {
             return Ok(None);
@@ -163,7 +163,7 @@ impl EffectOptions {
         self.check_cues(mode)?;
         let range = match self.cue_range {
             Some(range) => range,
-            None => DepthRange::of_sphere(content, camera)?,
+            None => DepthRange::of_content(content, camera)?,
         };
         let resolved = DepthCues::new(cues, range, size)?;
         self.cue = Some(DepthCues::filled_in(cues, size)?);

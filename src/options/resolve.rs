@@ -7,7 +7,7 @@ use super::to_picture::ResolvedPicture;
 use super::triple::Triple;
 use crate::error::{Error, Result};
 use crate::scene::{Camera, DepthRange, Mode, Quadrature, QuadratureMethod, SamplingMethod, Scene};
-use crate::subject::{Sphere, Subject};
+use crate::subject::{Content, Subject};
 
 /// A scene, the options that make it, and what was chosen for the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +19,8 @@ pub struct Resolved {
     pub options: SceneOptions,
     /// One sentence each about a default or computed value which the user may want to know.
     pub notes: Vec<String>,
-    /// What depth cues range over, where they were given no range: as much of this sphere as each camera has before it.
-    cued: Option<Sphere>,
+    /// What depth cues range over, where they were given no range: as much of this as each camera has before it.
+    cued: Option<Content>,
 }
 
 impl Resolved {
@@ -28,8 +28,8 @@ impl Resolved {
     #[must_use]
     pub fn seen_by(&self, camera: Camera) -> Self {
         let mut seen = self.clone();
-        if let (Some(sphere), Some(cues)) = (self.cued, &mut seen.scene.depth_cues)
-            && let Ok(range) = DepthRange::of_sphere(sphere, &camera)
+        if let (Some(content), Some(cues)) = (self.cued, &mut seen.scene.depth_cues)
+            && let Ok(range) = DepthRange::of_content(content, &camera)
         {
             cues.range = range;
             seen.options.effects.cue_range = Some(range);
@@ -194,10 +194,10 @@ mod tests {
             center_world: DVec3::new(1.0, 2.0, 3.0),
             radius_mm: 10.0,
         },
-        content: Sphere {
+        content: Content::around(Sphere {
             center_world: DVec3::new(-2.0, 2.5, 4.0),
             radius_mm: 3.0,
-        },
+        }),
         spacing_mm: DVec3::ONE,
         range: Range {
             min: -100.0,

@@ -262,7 +262,7 @@ pub(crate) const RULES: &[Rule] = &[
     scene("cue", What, &[CUED])
         .default(|| "none".to_owned()),
     scene("cue-range", What, &[CUED, Need::Cues])
-        .default(|| "what of the sphere around all that the picture can show lies in front of the eye".to_owned()),
+        .default(|| "the ends of what the picture can show, in front of the eye".to_owned()),
     scene("gradient", How, &[NORMALS, Need::Normals])
         .default(text::<GradientMethod>),
     scene("gradient-scale", How, &[NORMALS, Need::Normals, SPARSE])

@@ -11,6 +11,6 @@ mod resources;
 
 pub use abi::{Lanes, Variant, struct_layouts};
 pub use frame::{Options, Renderer, Rendering, SampleCheck, Sampled, check_picture, check_volume};
-pub use occupancy::content_sphere;
+pub use occupancy::content;
 pub use ray_caster::{FirstCrossing, RayCaster, TimedCrossings};
 pub use resources::{AngleError, Directions, GradientFigures, IndexRay};

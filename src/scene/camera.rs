@@ -72,8 +72,8 @@ impl Camera {
     pub fn of_view(view: View, subject: &Subject, size: ImageSize) -> Result<Self> {
         let orientation = Orientation::of(view);
         let fov_deg = FovDeg::default().get();
-        let target = subject.content.center_world;
-        let distance_mm = fit_distance_mm(subject.content.radius_mm, fov_deg, size);
+        let target = subject.content.sphere.center_world;
+        let distance_mm = fit_distance_mm(subject.content.sphere.radius_mm, fov_deg, size);
         let eye = target + orientation.toward_eye * distance_mm;
         Self::look_at(eye, target, orientation.up, Lens::Perspective { fov_deg })
     }

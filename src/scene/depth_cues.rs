@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use glam::DVec3;
+
 use super::camera::{Camera, Lens};
 use super::enum_names::enum_names;
 use super::keyed_text::KeyedText;
@@ -10,7 +12,7 @@ use super::quantities::{RimPower, Share};
 use crate::error::{Error, Result};
 use crate::extent::ImageSize;
 use crate::number_text::number;
-use crate::subject::Sphere;
+use crate::subject::{Content, Corners};
 
 /// A depth cue, as one is asked for (`--cue`): its kind, how strong it is, and what else that kind has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -237,18 +239,31 @@ impl DepthRange {
         )))
     }
 
-    /// From the nearest to the farthest point of a sphere in front of the eye; around an eye inside from there.
+    /// Between the ends of what a picture can show, as far as it lies in front of the eye: the nearest and the farthest depth that
+    /// both its sphere and its box may have.
     ///
     /// # Errors
-    /// Usage: the sphere lies behind the eye or is a point.
-    pub fn of_sphere(sphere: Sphere, camera: &Camera) -> Result<Self> {
-        let to_center = sphere.center_world - camera.eye_world();
-        let center_mm = match camera.lens() {
-            Lens::Perspective { .. } => to_center.length(),
-            Lens::Orthographic { .. } => to_center.dot(camera.forward()),
+    /// Usage: it lies behind the eye or is a point.
+    pub fn of_content(content: Content, camera: &Camera) -> Result<Self> {
+        let axial_mm = |point: DVec3| (point - camera.eye_world()).dot(camera.forward());
+        // Along a ray the depth is at least that along the view axis.
+        let depth_mm = |point: DVec3| match camera.lens() {
+            Lens::Perspective { .. } => point.distance(camera.eye_world()),
+            Lens::Orthographic { .. } => axial_mm(point),
         };
-        let near_mm = (center_mm - sphere.radius_mm).max(0.0);
-        Self::new(near_mm, center_mm + sphere.radius_mm).map_err(|_| {
+        let Content {
+            sphere,
+            corners: Corners(corners),
+        } = content;
+        let center_mm = depth_mm(sphere.center_world);
+        let of_sphere = [center_mm - sphere.radius_mm, center_mm + sphere.radius_mm];
+        let nearest_mm = corners
+            .map(axial_mm)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let farthest_mm = corners.map(depth_mm).into_iter().fold(0.0, f64::max);
+        let near_mm = of_sphere[0].max(nearest_mm).max(0.0);
+        Self::new(near_mm, of_sphere[1].min(farthest_mm)).map_err(|_| {
             Error::usage("nothing that the picture can show lies in front of the eye, so that depth cues have no range")
                 .hint("give one with 'cue-range', or turn the camera")
         })
@@ -300,8 +315,10 @@ impl fmt::Display for DepthRange {
 /// Halo and contour are of the picture's pixels, whose depths are those of the rays through their centres. A halo multiplies
 /// the light of a pixel by 1 − S·h, h the greatest of (1 − r/(W + 1))·min(1, 5·Δ), r ≤ W the distance in pixels of another
 /// one and Δ how much nearer that is, as a share of the range. A contour multiplies it by 1 − S·e, e the greatest of
-/// min(1, 50·δ) over the four lines through the pixel, δ the second difference of the depth, as a share of the range, of the
-/// two pixels W beside it; nothing is infinitely far away.
+/// min(1, 50·(δ₀ − 4·max(|δ₁|, |δ₂|))), where that is above 0, over the eight directions from the pixel: on the rim of
+/// something that goes on behind it. δ₀ is the second difference of the depths W ahead, here and W behind, as a share of the
+/// range, δ₁ and δ₂ those of the depths up to 2W and from W to 3W behind; nothing is infinitely far away, and outside the
+/// picture all goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthCues {
     /// The share of what is farthest that fog takes.
@@ -321,6 +338,8 @@ impl DepthCues {
     pub const HALO_SLOPE: u32 = 5;
     /// What a contour darkens by with the second difference of depths, as a share of the range.
     pub const CONTOUR_SLOPE: u32 = 50;
+    /// How many times what bends behind it something has to bend to have a contour.
+    pub const CONTOUR_EXCESS: u32 = 4;
     /// The rows of a picture for which a halo has one pixel.
     const HALO_ROWS: u32 = 85;
     /// The rows of a picture for which a contour has one pixel.
@@ -442,18 +461,39 @@ impl DepthCues {
         }
         if let Some((strength, width)) = self.contour {
             let w = i64::from(width.get());
-            let dark = [(w, 0), (0, w), (w, w), (w, -w)]
-                .into_iter()
-                .filter_map(|(x, y)| Some(depth_mm(x, y)? + depth_mm(-x, -y)? - 2.0 * here))
-                .map(|bend_mm| {
-                    (f64::from(Self::CONTOUR_SLOPE) * bend_mm / width_mm).clamp(0.0, 1.0)
-                })
-                .fold(0.0, f64::max);
+            let darkness = |bend_mm: f64| {
+                (f64::from(Self::CONTOUR_SLOPE) * bend_mm / width_mm).clamp(0.0, 1.0)
+            };
+            let dark = DIRECTIONS.iter().fold(0.0, |dark: f64, (x, y)| {
+                let at = |steps: i64| depth_mm(steps * w * x, steps * w * y);
+                let bend = |steps: i64| match (at(steps - 1), at(steps), at(steps + 1)) {
+                    (Some(a), Some(b), Some(c)) if b < f64::INFINITY => a + c - 2.0 * b,
+                    (Some(_), Some(_), Some(_)) => f64::INFINITY,
+                    _ => 0.0,
+                };
+                let behind = bend(-1).abs().max(bend(-2).abs());
+                match behind < f64::INFINITY {
+                    true => dark.max(darkness(bend(0) - f64::from(Self::CONTOUR_EXCESS) * behind)),
+                    false => dark,
+                }
+            });
             kept *= 1.0 - strength.get() * dark;
         }
         kept
     }
 }
+
+/// The eight directions from a pixel, in columns and rows.
+const DIRECTIONS: [(i64, i64); 8] = [
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+    (-1, 0),
+    (-1, -1),
+    (0, -1),
+    (1, -1),
+];
 
 impl Chromadepth {
     /// A share of the way from near to far as it is told apart.
@@ -470,9 +510,8 @@ impl Chromadepth {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
+    use crate::subject::Sphere;
 
     fn cues(texts: &[&str]) -> DepthCues {
         let cues: Vec<DepthCue> = texts.iter().map(|text| text.parse().unwrap()).collect();
@@ -571,15 +610,8 @@ mod tests {
         // At the rim alone: what is faced keeps its colour.
         let rim = cues(&["chromadepth:1,rim=2"]);
         assert_eq!(rim.tinted(white, 100.0, -1.0), white);
-        assert_eq!(
-            rim.tinted(white, 100.0, 0.0),
-            [1.0, 0.0, 0.0, 1.0]
-                .map(|c| {
-                    // the luminance of white is 1 but for rounding
-                    c * (0.2126 + 0.7152 + 0.0722)
-                })
-                .map(|c| c.min(1.0))
-        );
+        let [r, g, b, a] = rim.tinted(white, 100.0, 0.0);
+        assert!((r - 1.0).abs() < 1e-12 && g.abs() < 1e-12 && b.abs() < 1e-12 && a == 1.0);
     }
 
     /// A row of pixels: something near up to column 0, something far from column 1 on, nothing from column 9 on.
@@ -614,12 +646,26 @@ mod tests {
         for (column, kept) in [(-1, 1.0), (0, 0.0), (1, 1.0), (7, 1.0), (8, 0.0), (9, 1.0)] {
             assert_eq!(contour.kept(row(column, 40)), kept, "{column}");
         }
+        // What is less than four pixels wide is not drawn over.
+        let thin = |wide: i64| {
+            let at = move |x: i64| {
+                Some(if (0..wide).contains(&x) {
+                    110.0
+                } else {
+                    f64::INFINITY
+                })
+            };
+            (0..wide).map(move |column| contour.kept(move |x, _| at(column + x)))
+        };
+        assert!(thin(3).all(|kept| kept == 1.0));
+        assert_eq!(thin(4).collect::<Vec<f64>>(), [0.0, 1.0, 1.0, 0.0]);
         // Slanted planes have none, whatever their slope, nor has the picture's own edge.
         assert_eq!(
             contour.kept(|x, y| Some(150.0 + 9.0 * x as f64 - 3.0 * y as f64)),
             1.0
         );
-        assert_eq!(contour.kept(row(0, 0)), 0.0);
+        assert_eq!(contour.kept(row(0, 0)), 1.0);
+        assert_eq!(contour.kept(row(0, 1)), 0.0);
         assert_eq!(
             contour.kept(|x, y| (x >= 0 && y >= 0).then_some(150.0)),
             1.0
@@ -627,20 +673,33 @@ mod tests {
     }
 
     #[test]
-    fn the_range_of_a_sphere_is_what_lies_of_it_in_front() {
+    fn the_range_of_content_is_what_lies_of_it_in_front() {
         let eye = DVec3::new(0.0, -100.0, 0.0);
-        let lens = Lens::Perspective { fov_deg: 30.0 };
-        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, lens).unwrap();
-        let sphere = |y: f64, radius_mm: f64| Sphere {
-            center_world: DVec3::new(0.0, y, 0.0),
-            radius_mm,
+        let looking = |lens| Camera::look_at(eye, DVec3::ZERO, DVec3::Z, lens).unwrap();
+        let camera = looking(Lens::Perspective { fov_deg: 30.0 });
+        let around = |y: f64, radius_mm: f64| {
+            Content::around(Sphere {
+                center_world: DVec3::new(0.0, y, 0.0),
+                radius_mm,
+            })
         };
-        let range = DepthRange::of_sphere(sphere(0.0, 30.0), &camera).unwrap();
-        assert_eq!((range.near_mm(), range.far_mm()), (70.0, 130.0));
-        let inside = DepthRange::of_sphere(sphere(0.0, 130.0), &camera).unwrap();
-        assert_eq!((inside.near_mm(), inside.far_mm()), (0.0, 230.0));
-        let parallel = Lens::Orthographic { height_mm: 10.0 };
-        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, parallel).unwrap();
-        assert!(DepthRange::of_sphere(sphere(-200.0, 30.0), &camera).is_err());
+        let ends = |content, camera| {
+            let range = DepthRange::of_content(content, camera).unwrap();
+            (range.near_mm(), range.far_mm())
+        };
+        assert_eq!(ends(around(0.0, 30.0), &camera), (70.0, 130.0));
+        assert_eq!(ends(around(0.0, 130.0), &camera), (0.0, 230.0));
+        // A flat box in the sphere is nearer to what is seen of it.
+        let (half, place) = (DVec3::new(20.0, 5.0, 20.0), |corner| corner);
+        let flat = Content {
+            corners: Corners::between(-half, half, place),
+            ..around(0.0, 30.0)
+        };
+        let (near, far) = ends(flat, &camera);
+        assert_eq!(near, 95.0);
+        assert!((far - DVec3::new(20.0, 105.0, 20.0).length()).abs() < 1e-9);
+        let parallel = looking(Lens::Orthographic { height_mm: 10.0 });
+        assert_eq!(ends(flat, &parallel), (95.0, 105.0));
+        assert!(DepthRange::of_content(around(-200.0, 30.0), &parallel).is_err());
     }
 }

@@ -1,7 +1,9 @@
 //! A volume's [`Subject`].
 
+use glam::DVec3;
+
 use super::{Histogram, Volume, suggested_iso};
-use crate::subject::{Sphere, Subject};
+use crate::subject::{Content, Corners, Sphere, Subject};
 
 /// Bins of the histogram from which iso values are suggested.
 const BINS: usize = 1024;
@@ -18,12 +20,26 @@ impl Subject {
         Histogram::robust(volume, BINS)
     }
 
+    /// The bounds of all of a volume.
+    pub fn of_whole(volume: &Volume) -> Content {
+        let [x, y, z] = volume.dims().domain();
+        let world_from_index = volume.geometry().world_from_index();
+        Content {
+            sphere: volume.bounding_sphere().into(),
+            corners: Corners::between(
+                DVec3::new(x.0, y.0, z.0),
+                DVec3::new(x.1, y.1, z.1),
+                |corner| world_from_index.transform_point3(corner),
+            ),
+        }
+    }
+
     /// Measures a volume of which [`Subject::histogram`] is known.
     pub fn with_histogram(volume: &Volume, histogram: &Histogram) -> Self {
         let sphere = Sphere::from(volume.bounding_sphere());
         Self {
             sphere,
-            content: sphere,
+            content: Self::of_whole(volume),
             spacing_mm: volume.geometry().spacing_mm(),
             range: volume.range(),
             robust_range: histogram.range,

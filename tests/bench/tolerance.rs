@@ -15,7 +15,7 @@ use angioray::reference;
 use angioray::render::{Options, Renderer};
 use angioray::scene::Mode;
 use angioray::volume::{PhantomKind, PhantomSpec, Volume, phantom};
-use angioray::{Sphere, Subject};
+use angioray::{Content, Sphere, Subject};
 use cli_place::{Place, stderr};
 
 const WANTED: Wanted = Wanted::DISPLAY.with([Layer::Depth, Layer::Value]);
@@ -30,7 +30,7 @@ fn subject(volume: &Volume) -> Subject {
     let range = volume.range();
     Subject {
         sphere,
-        content: sphere,
+        content: Content::around(sphere),
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

@@ -489,6 +489,43 @@ fn a_replayed_picture_is_the_same_bytes_on_the_device() {
     }
 }
 
+/// So that tests may build unoptimised what they hold against truth (`scripts/test.sh`).
+#[test]
+fn kernels_that_are_not_optimised_make_the_same_bits() {
+    let Some((place, device)) = place() else {
+        return;
+    };
+    const OPTIONS: &str = "ANGIORAY_KERNEL_OPTIONS";
+    for flags in [
+        "--mode iso --ao rays=16,distance=4 --dof focus=auto,aperture=1 --aa 2",
+        "--mode iso --sampling fixed --shadows on --light camera:-1,1,1 --cue fog:0.5",
+        "--mode iso --ssao radius=4 --sparse 4 --cue chromadepth:1,rim=2 --cue halo:1",
+        "--mode mip --cue chromadepth:1",
+        "--mode lmip --sampling fixed",
+        "--mode mean",
+        "--mode dvr --shading phong --shadows on --light camera:-1,1,1",
+        "--mode dvr --quad adaptive --screen-error 0.05",
+    ] {
+        let line = |name: &str, more: &str| {
+            format!(
+                "render blob.nrrd -o {name} --size 40x24 --view left --aov all {flags} {more} {device}"
+            )
+        };
+        let mut optimised = place.command(&line("a.npy", ""));
+        let mut plain = place.command(&line("b.npy", ""));
+        for command in [
+            optimised.env_remove(OPTIONS),
+            plain.env(OPTIONS, "-cl-opt-disable"),
+        ] {
+            assert!(command.status().unwrap().success(), "{flags}");
+        }
+        assert_eq!(bytes(&place, "a.npy"), bytes(&place, "b.npy"), "{flags}");
+        // The control: another picture is not the same bytes.
+        place.done(&line("b.npy", "--azimuth 5"));
+        assert_ne!(bytes(&place, "a.npy"), bytes(&place, "b.npy"), "{flags}");
+    }
+}
+
 #[test]
 fn what_may_not_change_a_picture_does_not() {
     let Some((place, device)) = place() else {

@@ -3,7 +3,7 @@
 use angioray::extent::Range;
 use angioray::options::{Resolved, SceneOptions};
 use angioray::scene::{FrameCount, Orbit, OrbitAxis};
-use angioray::{Sphere, Subject};
+use angioray::{Content, Sphere, Subject};
 use glam::DVec3;
 
 const SPHERE: Sphere = Sphere {
@@ -14,7 +14,7 @@ const SPHERE: Sphere = Sphere {
 fn subject() -> Subject {
     Subject {
         sphere: SPHERE,
-        content: SPHERE,
+        content: Content::around(SPHERE),
         spacing_mm: DVec3::ONE,
         range: Range {
             min: 0.0,

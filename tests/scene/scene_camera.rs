@@ -3,7 +3,7 @@
 use angioray::extent::Range;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens};
-use angioray::{Scene, Sphere, Subject};
+use angioray::{Content, Scene, Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ const SPHERE: Sphere = Sphere {
 
 const SUBJECT: Subject = Subject {
     sphere: SPHERE,
-    content: SPHERE,
+    content: Content::around(SPHERE),
     spacing_mm: DVec3::ONE,
     range: Range { min: 0.0, max: 1.0 },
     robust_range: Range { min: 0.0, max: 1.0 },
@@ -158,7 +158,7 @@ fn scene_of_part(line: &[&str]) -> Scene {
     let words = std::iter::once("angioray").chain(line.iter().copied());
     let options = Flags::try_parse_from(words).unwrap().options;
     let subject = Subject {
-        content: CONTENT,
+        content: Content::around(CONTENT),
         ..SUBJECT
     };
     let text = options.to_toml().unwrap();

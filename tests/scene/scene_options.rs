@@ -5,7 +5,7 @@ use angioray::options::{Resolved, SceneFile, SceneOptions, Threshold, TransferCh
 use angioray::scene::{
     Gradient, Lens, Light, Picture, Precomputed, Projection, Reconstruction, SamplingMethod,
 };
-use angioray::{Sphere, Subject};
+use angioray::{Content, Sphere, Subject};
 use clap::Parser;
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ const SPHERE: Sphere = Sphere {
 
 const SUBJECT: Subject = Subject {
     sphere: SPHERE,
-    content: SPHERE,
+    content: Content::around(SPHERE),
     spacing_mm: DVec3::ONE,
     range: Range {
         min: -100.0,

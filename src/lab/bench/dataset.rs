@@ -10,7 +10,7 @@ use crate::options::{SceneOptions, Setting};
 use crate::scene::{
     Aperture, DepthOfField, DistanceMm, Emission, Knot, Picture, Rgb, Scene, TransferFunction,
 };
-use crate::subject::{Sphere, Subject};
+use crate::subject::{Content, Sphere, Subject};
 use crate::volume::{
     Geometry, NonFinite, PhantomKind, PhantomSpec, Rescale, Volume, Voxels, phantom,
 };
@@ -62,7 +62,7 @@ impl Dataset {
         let sphere = Sphere::from(self.volume.bounding_sphere());
         let subject = Subject {
             sphere,
-            content: sphere,
+            content: Content::around(sphere),
             spacing_mm: self.volume.geometry().spacing_mm(),
             range: self.volume.range(),
             robust_range: self.volume.range(),

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::extent::Dims;
 use crate::options::{ErrorBound, ErrorMetric, SceneOptions};
 use crate::scene::Mode;
-use crate::subject::{Sphere, Subject};
+use crate::subject::{Content, Sphere, Subject};
 use crate::volume::{PhantomKind, PhantomSpec, Volume, VoxelType, phantom};
 
 /// A random phantom of 24 to 64 voxels along each axis, its voxels a third of the time longer along
@@ -140,7 +140,7 @@ pub fn subject(volume: &Volume) -> Subject {
     let range = volume.range();
     Subject {
         sphere,
-        content: sphere,
+        content: Content::around(sphere),
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

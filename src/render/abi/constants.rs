@@ -269,6 +269,7 @@ const NUMBERS: &[(&str, u32)] = &[
     ("BLURRED_SQUARE", BLURRED_SQUARE),
     ("HALO_SLOPE", DepthCues::HALO_SLOPE),
     ("CONTOUR_SLOPE", DepthCues::CONTOUR_SLOPE),
+    ("CONTOUR_EXCESS", DepthCues::CONTOUR_EXCESS),
     // What becomes of a pixel of a sparsely cast picture: it is filled, it was cast, it is cast next, it belongs to a block
     // that is interpolated (kernels/lib/ray/marks.clh).
     ("MARK_FILLED", 0),

@@ -1,20 +1,10 @@
 //! Depth cues: what colours tell of depth, once what they show is known.
 
 use crate::error::Result;
-use crate::frame::{Layer, Wanted};
 use crate::render::passes::{Run, dim_at_edges, tint_by_depth};
-use crate::scene::Scene;
 
 use super::planes::Planes;
 use super::view::View;
-
-/// Adds the planes that the colours of a scene's rays need: depths, and for colours at the rim of things normals.
-pub fn with_cues(scene: &Scene, wanted: Wanted) -> Wanted {
-    let cues = scene.depth_cues;
-    wanted
-        .with_if(cues.is_some(), Layer::Depth)
-        .with_if(cues.is_some_and(|cues| cues.rim().is_some()), Layer::Normal)
-}
 
 /// Tints and fades the colours of the run's rays, which are finished otherwise, by the depths of what they show, where the scene
 /// asks for it. Each ray's once.

@@ -18,12 +18,11 @@ use crate::scene::{Light, Occlusion, SamplingMethod, Scene, Storage};
 use crate::volume::Volume;
 
 use super::casting::cast_picture;
-use super::cues::with_cues;
 use super::planes::Planes;
 use super::room::{check_picture, check_volume, listing_bytes};
 use super::sample_check::SampleCheck;
 use super::step::check_step;
-use super::view::View;
+use super::view::{View, with_cues};
 
 /// How the device is used; never changes a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

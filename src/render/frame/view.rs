@@ -1,15 +1,13 @@
 //! The scene and its data, as a picture's schedule of passes gets them.
 
 use crate::error::Result;
-use crate::frame::Wanted;
+use crate::frame::{Layer, Wanted};
 use crate::octree::Octree;
 use crate::render::abi::{KernelEnum, step_mm};
 use crate::render::passes::{CastInputs, Run};
 use crate::render::resources::DeviceGradient;
 use crate::scene::{Lens, Scene};
 use crate::volume::Volume;
-
-use super::cues::with_cues;
 
 /// A scene with its data on host and device, and the planes that are wanted of it.
 pub struct View<'a> {
@@ -59,4 +57,12 @@ impl<'a> View<'a> {
         let sampling = &self.scene.sampling;
         sampling.skip.then_some(sampling.traverse).number()
     }
+}
+
+/// Adds the planes that the colours of a scene's rays need: depths, and for colours at the rim of things normals.
+pub fn with_cues(scene: &Scene, wanted: Wanted) -> Wanted {
+    let cues = scene.depth_cues;
+    wanted
+        .with_if(cues.is_some(), Layer::Depth)
+        .with_if(cues.is_some_and(|cues| cues.rim().is_some()), Layer::Normal)
 }

@@ -7,16 +7,16 @@ use crate::error::Result;
 use crate::render::abi::{StoredIso, stored};
 use crate::render::resources::Knots;
 use crate::scene::{Filter, Picture, Projection};
-use crate::subject::Sphere;
+use crate::subject::{Content, Corners, Sphere, Subject};
 use crate::volume::Volume;
 
 use super::cells::may_cross;
 use super::opacity_ranges::OpacityRanges;
 use super::rows::Rows;
 
-/// The bounding sphere of everything that pictures, each with its filter, can show of a volume: about the centre
-/// of the box, along the voxel axes, around all cells that can show something. Where nothing can, or all of the
-/// volume, it is the volume's.
+/// The bounds of everything that pictures, each with its filter, can show of a volume: the box, along the voxel axes, around
+/// all cells that can show something, and the sphere about the box's centre around them. Where nothing can, or all of the
+/// volume, they are the volume's.
 ///
 /// A surface is shown by the cells whose values the iso value parts and, with caps, by those at or above it at
 /// the volume's faces; a medium by those that hold a value that absorbs; a maximum (`mip`, `lmip`) by those
@@ -25,11 +25,11 @@ use super::rows::Rows;
 ///
 /// # Errors
 /// Not enough memory.
-pub fn content_sphere(volume: &Volume, shown: &[(Picture, Filter)]) -> Result<Sphere> {
-    let whole = Sphere::from(volume.bounding_sphere());
+pub fn content(volume: &Volume, shown: &[(Picture, Filter)]) -> Result<Content> {
+    let whole = Subject::of_whole(volume);
     let mut contents = Vec::new();
     for (picture, filter) in shown {
-        let Some(rows) = content(volume, picture, *filter)? else {
+        let Some(rows) = shown_rows(volume, picture, *filter)? else {
             return Ok(whole);
         };
         contents.push(rows);
@@ -39,7 +39,7 @@ pub fn content_sphere(volume: &Volume, shown: &[(Picture, Filter)]) -> Result<Sp
 }
 
 /// The cells of which a picture can show something, row by row; `None`: it shows all of the volume.
-fn content(volume: &Volume, picture: &Picture, filter: Filter) -> Result<Option<Rows>> {
+fn shown_rows(volume: &Volume, picture: &Picture, filter: Filter) -> Result<Option<Rows>> {
     let rows = match picture {
         // The first cell of a row that has a corner inside has one outside, or is at the volume's face.
         Picture::Surface {
@@ -76,26 +76,25 @@ fn may_be_inside(value: f32, iso: StoredIso) -> bool {
     value - iso.value >= -iso.error
 }
 
-/// The sphere around the cells of all rows; `None` where there are none.
-fn around(contents: &[Rows], world_from_index: DAffine3) -> Option<Sphere> {
+/// What holds the cells of all rows; `None` where there are none.
+fn around(contents: &[Rows], world_from_index: DAffine3) -> Option<Content> {
     let boxes = || contents.par_iter().flat_map(Rows::boxes);
     let join = |a: [DVec3; 2], b: [DVec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let [least, greatest] = boxes().reduce_with(join)?;
     let center_world = world_from_index.transform_point3((least + greatest) * 0.5);
-    let farthest = |corners: [DVec3; 2]| {
-        let corner =
-            |at: usize| DVec3::from_array([0, 1, 2].map(|axis| corners[at >> axis & 1][axis]));
-        let distance = |at| {
-            world_from_index
-                .transform_point3(corner(at))
-                .distance(center_world)
-        };
-        (0..8).map(distance).fold(0.0, f64::max)
+    let in_world = |corner| world_from_index.transform_point3(corner);
+    let farthest = |[least, greatest]: [DVec3; 2]| {
+        let corners = Corners::between(least, greatest, in_world).0;
+        let distances = corners.map(|corner| corner.distance(center_world));
+        distances.into_iter().fold(0.0, f64::max)
     };
     let radius_mm = boxes().map(farthest).reduce(|| 0.0, f64::max);
-    Some(Sphere {
-        center_world,
-        radius_mm,
+    Some(Content {
+        sphere: Sphere {
+            center_world,
+            radius_mm,
+        },
+        corners: Corners::between(least, greatest, in_world),
     })
 }
 
@@ -311,7 +310,9 @@ mod tests {
     }
 
     fn content_of(volume: &Volume, picture: &Picture, filter: Filter) -> Sphere {
-        content_sphere(volume, &[(picture.clone(), filter)]).unwrap()
+        content(volume, &[(picture.clone(), filter)])
+            .unwrap()
+            .sphere
     }
 
     #[test]
@@ -467,14 +468,14 @@ mod tests {
             .iter()
             .flat_map(|(picture, filter)| shown_corners(&volume, picture, *filter))
             .collect();
-        let both = content_sphere(&volume, &shown).unwrap();
+        let both = content(&volume, &shown).unwrap().sphere;
         assert!(same(both, sphere_of(&volume, &corners)));
         // The control: one alone is another.
         let alone = content_of(&volume, &shown[0].0, shown[0].1);
         assert!(alone.radius_mm < 0.5 * both.radius_mm);
         // With one that shows all of the volume it is the volume's.
         let mean = (projection(Projection::Mean), Filter::Linear);
-        let all = content_sphere(&volume, &[shown[0].clone(), mean]).unwrap();
+        let all = content(&volume, &[shown[0].clone(), mean]).unwrap().sphere;
         assert_eq!(all, volume.bounding_sphere().into());
     }
 }

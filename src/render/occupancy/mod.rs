@@ -13,7 +13,7 @@ mod opacity_ranges;
 mod rows;
 
 pub use cache::OccupancyCache;
-pub use content::content_sphere;
+pub use content::content;
 pub use criterion::{Criterion, Opacity};
 pub use floor::Floor;
 pub use homogeneity::stand_ins;

@@ -6,7 +6,7 @@ use angioray::frame::STEPS;
 use angioray::options::SceneOptions;
 use angioray::scene::{Camera, Lens, Picture, Quadrature, QuadratureMethod, Scene};
 use angioray::volume::{Geometry, Volume};
-use angioray::{Sphere, Subject};
+use angioray::{Content, Sphere, Subject};
 use glam::{DMat3, DVec3};
 
 use crate::common::{self, hash, on_device, on_reference, volume_with};
@@ -26,7 +26,7 @@ fn subject(volume: &Volume) -> Subject {
     let range = volume.range();
     Subject {
         sphere,
-        content: sphere,
+        content: Content::around(sphere),
         spacing_mm: volume.geometry().spacing_mm(),
         range,
         robust_range: range,

@@ -12,7 +12,7 @@ use angioray::options::SceneOptions;
 use angioray::progress::Silent;
 use angioray::scene::TransferFile;
 use angioray::volume::{Histogram, RawLayout, ReadOptions, read, suggested_iso};
-use angioray::{Sphere, Subject};
+use angioray::{Content, Sphere, Subject};
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use flate2::{Compression, Crc};
@@ -39,7 +39,7 @@ const SPHERE: Sphere = Sphere {
 
 const SUBJECT: Subject = Subject {
     sphere: SPHERE,
-    content: SPHERE,
+    content: Content::around(SPHERE),
     spacing_mm: DVec3::new(0.5, 0.5, 2.0),
     range: Range {
         min: -100.0,

@@ -315,3 +315,45 @@ fn what_fog_hides_keeps_its_layers() {
         assert!(colors.iter().all(|color| **color == [0.0; 4]));
     }
 }
+
+/// What is parallel looks the same from the front and, mirrored, from behind: a maximum does not say which is which.
+#[test]
+fn a_parallel_maximum_is_ambiguous_and_a_cue_is_not() {
+    let Some(device) = common::device() else {
+        return;
+    };
+    let volume = tree();
+    let from = |toward_eye: DVec3, cues: &[&str]| {
+        let mut scene = of_mode(&volume, Mode::Mip, &[]);
+        let (center, radius_mm) = volume.bounding_sphere();
+        let eye = center + toward_eye * 3.0 * radius_mm;
+        let lens = Lens::Orthographic {
+            height_mm: 2.0 * radius_mm,
+        };
+        scene.camera = Camera::look_at(eye, center, DVec3::Z, lens).unwrap();
+        let ends = [2.0 * radius_mm, 4.0 * radius_mm];
+        scene.depth_cues = (!cues.is_empty()).then(|| depth_cues(cues, ends, scene.size));
+        scene
+    };
+    let mirrored = |frame: &Frame| {
+        let mut color = frame.color.clone();
+        let width = frame.size.width() as usize;
+        color.chunks_mut(width).for_each(|row| row.reverse());
+        color
+    };
+    let apart = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        let channels = a.as_flattened().iter().zip(b.as_flattened());
+        let differences = channels.map(|(a, b)| f64::from((a - b).abs()));
+        differences.sum::<f64>() / (4 * a.len()) as f64
+    };
+    for (cues, same) in [(&[][..], true), (&["chromadepth:1"][..], false)] {
+        let front = both(&device, &volume, &from(DVec3::NEG_Y, cues));
+        let behind = both(&device, &volume, &from(DVec3::Y, cues));
+        for (front, behind) in front.iter().zip(&behind) {
+            let difference = apart(&front.color, &mirrored(behind));
+            assert_eq!(difference < 1e-5, same, "{cues:?}: {difference}");
+            // The control: not without mirroring.
+            assert!(apart(&front.color, &behind.color) > 1e-3);
+        }
+    }
+}

@@ -20,31 +20,33 @@ impl Subject {
         Histogram::robust(volume, BINS)
     }
 
+    /// Measures a volume of which [`Subject::histogram`] is known.
+    pub fn with_histogram(volume: &Volume, histogram: &Histogram) -> Self {
+        let sphere = Sphere::from(volume.bounding_sphere());
+        Self {
+            sphere,
+            content: Content::of(volume),
+            spacing_mm: volume.geometry().spacing_mm(),
+            range: volume.range(),
+            robust_range: histogram.range,
+            otsu: histogram.otsu(),
+            suggested_iso: suggested_iso(histogram),
+        }
+    }
+}
+
+impl Content {
     /// The bounds of all of a volume.
-    pub fn of_whole(volume: &Volume) -> Content {
+    pub fn of(volume: &Volume) -> Self {
         let [x, y, z] = volume.dims().domain();
         let world_from_index = volume.geometry().world_from_index();
-        Content {
+        Self {
             sphere: volume.bounding_sphere().into(),
             corners: Corners::between(
                 DVec3::new(x.0, y.0, z.0),
                 DVec3::new(x.1, y.1, z.1),
                 |corner| world_from_index.transform_point3(corner),
             ),
-        }
-    }
-
-    /// Measures a volume of which [`Subject::histogram`] is known.
-    pub fn with_histogram(volume: &Volume, histogram: &Histogram) -> Self {
-        let sphere = Sphere::from(volume.bounding_sphere());
-        Self {
-            sphere,
-            content: Self::of_whole(volume),
-            spacing_mm: volume.geometry().spacing_mm(),
-            range: volume.range(),
-            robust_range: histogram.range,
-            otsu: histogram.otsu(),
-            suggested_iso: suggested_iso(histogram),
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::render::abi::{StoredIso, stored};
 use crate::render::resources::Knots;
 use crate::scene::{Filter, Picture, Projection};
-use crate::subject::{Content, Corners, Sphere, Subject};
+use crate::subject::{Content, Corners, Sphere};
 use crate::volume::Volume;
 
 use super::cells::may_cross;
@@ -26,7 +26,7 @@ use super::rows::Rows;
 /// # Errors
 /// Not enough memory.
 pub fn content(volume: &Volume, shown: &[(Picture, Filter)]) -> Result<Content> {
-    let whole = Subject::of_whole(volume);
+    let whole = Content::of(volume);
     let mut contents = Vec::new();
     for (picture, filter) in shown {
         let Some(rows) = shown_rows(volume, picture, *filter)? else {
@@ -383,6 +383,15 @@ mod tests {
                 radius_mm,
             };
             assert!(same(linear, around(spacing_mm.length())), "{picture:?}");
+            // The box's corners are those of the cells; of a voxel elsewhere they are others.
+            let corners = |volume: &Volume| {
+                let shown = [(picture.clone(), Filter::Linear)];
+                content(volume, &shown).unwrap().corners
+            };
+            let [least, greatest] = [-1.0, 1.0].map(|aside| DVec3::new(4.0, 3.0, 5.0) + aside);
+            let cells = Corners::between(least, greatest, |p| at(&middle, p));
+            assert_eq!(corners(&middle), cells, "{picture:?}");
+            assert_ne!(corners(&alone([3, 3, 5])), cells);
             let nearest = content_of(&middle, &picture, Filter::Nearest);
             assert!(
                 same(nearest, around(spacing_mm.length() / 2.0)),

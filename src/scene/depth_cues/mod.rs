@@ -88,16 +88,13 @@ impl DepthCues {
             contour: None,
             range,
         };
-        let drawn = |edge: Edge, rows| {
-            let width = edge.width.unwrap_or(WidthPx::of_rows(size, rows));
-            Some((edge.strength, width))
-        };
+        let drawn = |edge: Edge| edge.width.map(|width| (edge.strength, width));
         for cue in Self::filled_in(cues, size)? {
             match cue {
                 DepthCue::Fog(share) => all.fog = share,
                 DepthCue::Chromadepth(colors) => all.chromadepth = Some(colors),
-                DepthCue::Halo(edge) => all.halo = drawn(edge, Self::HALO_ROWS),
-                DepthCue::Contour(edge) => all.contour = drawn(edge, Self::CONTOUR_ROWS),
+                DepthCue::Halo(edge) => all.halo = drawn(edge),
+                DepthCue::Contour(edge) => all.contour = drawn(edge),
             }
         }
         Ok(all)

@@ -148,9 +148,10 @@ fn halos_and_contours_lie_beside_the_tubes_edges() {
         let columns: Vec<usize> = (0..96).filter(dark).collect();
         // A line a pixel wide on either side of each tube, and where the wall ends.
         assert_eq!(columns, [1, 22, 40, 55, 73, 94]);
-        // Their round sides have none.
-        let lit = (23..40).chain(56..73).all(|column| row[column][0] > 0.499);
-        assert!(lit);
+        // Their round sides, which are made of cells, have next to none.
+        let least = |least: f32, column: usize| least.min(row[column][0]);
+        let darkest = (23..40).chain(56..73).fold(1.0, least);
+        assert!(darkest > 0.4, "{darkest}");
     }
 }
 

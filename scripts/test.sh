@@ -21,7 +21,7 @@ cargo clippy --locked --all-targets -- -D warnings
 if cargo nextest --version >/dev/null 2>&1; then
     # Most tests build more than they render. Kernels that are not optimised are built in a third of the time and make the same
     # bits (cli_device has the test); those that measure, render long or are held against the reference stay as users have them.
-    optimised='binary(hard_cases) | test(cli_bench_pareto) | test(cli_bench_effects) | test(quadrature::) | test(agreement::) | test(kernel_memory)'
+    optimised='test(aimed::) | test(cli_bench_pareto) | test(cli_bench_effects) | test(quadrature::) | test(agreement::) | test(kernel_memory)'
     status=0
     ANGIORAY_KERNEL_OPTIONS=-cl-opt-disable cargo nextest run --locked --no-fail-fast -E "not ($optimised)" || status=$?
     cargo nextest run --locked --no-fail-fast -E "$optimised" || status=$?

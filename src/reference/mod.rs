@@ -152,7 +152,7 @@ impl<'a> Seer<'a> {
             lens: None,
             depths_mm: None,
         };
-        if cues.is_some_and(|cues| cues.draw_edges()) {
+        if cues.is_some_and(|cues| cues.draws_edges()) {
             let depth_mm = |pixel| seer.cast(pixel, [0.5; 2], None).depth_mm;
             let pixels = (0..scene.size.pixels() as u32).into_par_iter();
             seer.depths_mm = Some(pixels.map(depth_mm).collect());

@@ -13,7 +13,7 @@ use super::view::View;
 /// As [`Run::cast`].
 pub fn tint(run: &mut Run, view: &View, planes: &mut Planes) -> Result<()> {
     match &view.scene.depth_cues {
-        Some(cues) if cues.tint() => tint_by_depth(run, cues, &planes.layers, &mut planes.color),
+        Some(cues) if cues.tints() => tint_by_depth(run, cues, &planes.layers, &mut planes.color),
         _ => Ok(()),
     }
 }
@@ -25,7 +25,7 @@ pub fn tint(run: &mut Run, view: &View, planes: &mut Planes) -> Result<()> {
 /// As [`Run::screen`].
 pub fn draw_edges(run: &mut Run, view: &View, planes: &mut Planes) -> Result<()> {
     match &view.scene.depth_cues {
-        Some(cues) if cues.draw_edges() => {
+        Some(cues) if cues.draws_edges() => {
             dim_at_edges(run, cues, &planes.layers, &mut planes.color)
         }
         _ => Ok(()),

@@ -348,7 +348,7 @@ fn check_alone(scene: &Scene) -> Result<()> {
             "occlusion that is estimated from the picture needs all of its pixels",
         ));
     }
-    if scene.depth_cues.is_some_and(|cues| cues.draw_edges()) {
+    if scene.depth_cues.is_some_and(|cues| cues.draws_edges()) {
         return Err(Error::usage(
             "what is drawn at edges needs the pixels on both sides of them",
         ));

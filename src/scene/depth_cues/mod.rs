@@ -101,12 +101,12 @@ impl DepthCues {
     }
 
     /// Whether the colours of single rays depend on their depths.
-    pub fn tint(&self) -> bool {
+    pub fn tints(&self) -> bool {
         self.fog != Share::NONE || self.chromadepth.is_some()
     }
 
     /// Whether what is seen beside a pixel decides its light.
-    pub fn draw_edges(&self) -> bool {
+    pub fn draws_edges(&self) -> bool {
         self.halo.is_some() || self.contour.is_some()
     }
 
